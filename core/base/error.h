@@ -1,0 +1,32 @@
+// The one exception type of hairbake. Its kind decides the command line's exit code and the service's answer.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace hairbake {
+
+enum class ErrorKind {
+    usage,             ///< the request is wrong: an unknown field, a value out of range
+    bad_input,         ///< a file is missing, broken or hostile
+    out_of_resources,  ///< memory, disk
+    cancelled,         ///< the caller asked to stop
+    internal           ///< a defect of hairbake
+};
+
+/// What went wrong, in words for the person who gave the input: which file, where in it, what was found and what
+/// is allowed. `field` is the request field at fault ("transmittance.voxels") or empty.
+class Error : public std::runtime_error {
+public:
+    Error(ErrorKind kind, const std::string& message, std::string field = {})
+        : std::runtime_error(message), kind_(kind), field_(std::move(field)) {}
+
+    ErrorKind kind() const { return kind_; }
+    const std::string& field() const { return field_; }
+
+private:
+    ErrorKind kind_;
+    std::string field_;
+};
+
+}  // namespace hairbake

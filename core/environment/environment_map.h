@@ -1,0 +1,59 @@
+// An environment: radiance arriving from every direction, as a lat-long map in hairbake's frame.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/vec.h"
+
+namespace hairbake {
+
+/// Which direction the columns of a lat-long map look along. Row 0 is +Y in all of them.
+enum class LatLong {
+    gltf,      ///< centre column +X, right of it +Z (three.js, glTF)
+    filament,  ///< centre +Z, right of it +X: a mirror image in this frame, which is what the name asks for
+    openexr    ///< centre +Z, right of it -X
+};
+
+enum class InvalidRadiance {
+    reject,  ///< a negative, infinite or NaN pixel is an error naming it
+    clamp    ///< negative and NaN become 0, +infinity the largest finite value of the map; counted
+};
+
+/// The request's fields that say how an environment is read.
+struct EnvironmentSettings {
+    std::string layout = "auto";              ///< auto | latlong (crosses, strips and faces with the formats issue)
+    LatLong latlong = LatLong::gltf;
+    std::array<double, 3> rotation_deg{};     ///< active, right-handed, about world X first, then Y, then Z
+    double exposure_stops = 0;                ///< radiance times 2^exposure_stops
+    std::array<double, 3> tint{1, 1, 1};      ///< radiance times tint, per channel, >= 0
+    InvalidRadiance invalid_radiance = InvalidRadiance::reject;
+};
+
+/// What was found wrong in the pixels and what the policy did about it; goes to the manifest.
+struct RadianceRepairs {
+    std::uint64_t negative_pixels = 0, nan_pixels = 0, infinite_pixels = 0;
+    double energy_removed = 0;   ///< sum over clamped negative values of |value| * solid angle, all channels
+    double energy_total = 0;     ///< sum of value * solid angle after repair, all channels
+};
+
+/// Linear, scene-referred RGB radiance. pixels[row * width + column]; the texel's direction is that of the
+/// convention `latlong` followed by the rotation matrix; both are kept unapplied so that nothing is resampled.
+/// exposure and tint are already applied to the pixels.
+struct EnvironmentMap {
+    int width = 0, height = 0;
+    std::vector<Vec3f> pixels;
+    LatLong latlong = LatLong::gltf;
+    std::array<Vec3d, 3> rotation{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};  ///< rows of the active matrix
+
+    std::string source_format;          ///< "hdr", "openexr", ... as OpenImageIO names it
+    std::string layout = "latlong";     ///< what `auto` took
+    std::string primaries = "unspecified";  ///< colour space of the input, kept and named, never converted
+    bool low_dynamic_range = false;     ///< 8 or 16 bit integer input, sRGB decoded
+    RadianceRepairs repairs;
+    std::vector<std::string> warnings;  ///< for the person who gave the file
+};
+
+}  // namespace hairbake

@@ -1,0 +1,28 @@
+// Cem Yuksel's HAIR format, read and written whole.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "core/hair/hair_model.h"
+
+namespace hairbake {
+
+/// Reads a .hair file: every combination of the array bits but the points array, which the format demands. Counts are
+/// checked against the file's size before memory is taken. Throws Error(bad_input) naming file, strand and
+/// vertex, what was found and what is allowed: a bad magic, counts that disagree, a truncated or over-long file, NaN, infinity or
+/// coordinates beyond 1e18 in magnitude.
+HairModel read_hair(const std::filesystem::path& file);
+
+/// The same from memory; `name` stands for the file in messages. This is what the fuzzer calls.
+HairModel read_hair(std::span<const std::byte> bytes, const std::string& name);
+
+/// Writes the model; reading the result gives the same model, and a model that was read unchanged gives the same bytes.
+void write_hair(const HairModel& model, const std::filesystem::path& file);
+
+/// A copy of `model` whose colours are grey with the value of `transmittance` ([V], 0 to 1) and nothing else changed.
+HairModel with_transmittance_as_colors(const HairModel& model, std::span<const float> transmittance);
+
+}  // namespace hairbake

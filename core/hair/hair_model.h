@@ -1,0 +1,43 @@
+// A hair model as its file gave it: strands of points, with whatever arrays the file has.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/base/vec.h"
+
+namespace hairbake {
+
+/// Strands in file order. V = positions.size() points, S = strand_begin.size() - 1 strands; strand s owns the points
+/// [strand_begin[s], strand_begin[s+1]), root first, at least one point each. An optional array is empty when the file has none, and
+/// then the default of the header holds for every point. Everything is kept that a writer needs to give the file
+/// back unchanged. Positions are finite and in the model's own unit, right-handed, Y up.
+struct HairModel {
+    std::vector<std::uint32_t> strand_begin;  ///< [S + 1]
+    std::vector<Vec3f> positions;             ///< [V]
+    std::vector<float> thickness;             ///< [V] or empty; strand diameter
+    std::vector<float> transparency;          ///< [V] or empty; 0 opaque .. 1 clear
+    std::vector<Vec3f> colors;                ///< [V] or empty; linear RGB
+
+    bool has_segments_array = true;  ///< whether the file gives a segment count for each strand
+    std::uint32_t default_segments = 0;
+    float default_thickness = 0;
+    float default_transparency = 0;
+    Vec3f default_color{1, 1, 1};
+    std::array<char, 88> info{};  ///< the header's free text, as in the file
+
+    std::size_t strand_count() const { return strand_begin.empty() ? 0 : strand_begin.size() - 1; }
+    std::size_t vertex_count() const { return positions.size(); }
+};
+
+/// The request's `strand` block: how the model's widths and opacities are read.
+struct StrandSettings {
+    std::optional<double> width;     ///< strand diameter in model units for every point, instead of the file's; > 0
+    double width_scale = 1;          ///< multiplies whichever width holds; > 0
+    double opacity = 1;              ///< share of light that one strand crossing stops, [0, 1]
+    bool opacity_from_file = false;  ///< take 1 - transparency of the file instead of `opacity`
+};
+
+}  // namespace hairbake

@@ -1,0 +1,71 @@
+// Irradiance maps over the strand tangent: one diffuse and M + 1 specular cube maps (Xing 2012, section 3).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/base/vec.h"
+#include "core/environment/environment_map.h"
+
+namespace hairbake {
+
+enum class IrradianceMethod {
+    exact,  ///< every pixel, through flux-centroid lights and a kernel table
+    sh      ///< zonal convolution in spherical harmonics
+};
+
+/// The request's `irradiance` block without the fields of EnvironmentSettings.
+struct IrradianceSettings {
+    std::string model = "kajiya-kay";
+    int face_size = 16;        ///< texels per cube edge, 4 to 256
+    int specular_maps = 33;    ///< M + 1, from 2 to 257; theta'_m = m pi / M
+    double exponent = 64;      ///< Kajiya-Kay p, 0 to 4096
+    IrradianceMethod method = IrradianceMethod::exact;
+    std::optional<int> sh_bands_diffuse;   ///< 1 to 128 bands (l = 0 .. bands - 1); empty: auto from sh_error
+    std::optional<int> sh_bands_specular;
+    double sh_error = 0.01;    ///< target of auto: RMS over the largest value of all maps, (0, 1]
+    bool clamp_negative = true;  ///< sh only: negative texels become 0, their mass is reported
+};
+
+/// A cube map in the house orientation (design, Conventions): texels[(face * size + row) * size + column].
+using CubeTexels = std::vector<Vec3f>;
+
+struct MapStatistics {
+    Vec3d mean;              ///< weighted by texel solid angle
+    Vec3f minimum, maximum;
+    double clamped_negative_mass = 0;  ///< sum of |negative| * texel solid angle over channels, before clamping
+};
+
+/// Everything the irradiance stage gives. Values are irradiance-like: radiance times steradian, Kd and Ks not applied.
+struct IrradianceMaps {
+    int face_size = 0;
+    double exponent = 0;
+    CubeTexels diffuse;                 ///< D(t)
+    std::vector<CubeTexels> specular;   ///< S_m(t), m = 0 .. M
+    MapStatistics diffuse_statistics;
+    std::vector<MapStatistics> specular_statistics;
+
+    /// Real SH coefficients of the environment, [bands * bands] in the order l*l + l + m of spec section 0.
+    std::vector<Vec3d> environment_sh;
+    int environment_sh_bands = 0;
+
+    /// Bound for |linear interpolation between neighbouring theta' - truth| at any t and theta', per channel, in
+    /// the unit of the maps and over the largest value of all maps.
+    Vec3d interpolation_bound;
+    double interpolation_bound_relative = 0;
+
+    /// sh only: bands used and predicted truncation error (RMS over the largest value of all maps).
+    int sh_bands_diffuse = 0, sh_bands_specular = 0;
+    double predicted_error_diffuse = 0, predicted_error_specular = 0;
+
+    std::vector<std::string> warnings;
+};
+
+/// The irradiance stage. Reads nothing but its arguments; the same arguments give the same bytes for any thread count.
+/// Throws Error(usage) naming the field for a value out of range, Error(cancelled).
+IrradianceMaps bake_irradiance(const EnvironmentMap& environment, const IrradianceSettings& settings,
+                               Progress& progress);
+
+}  // namespace hairbake

@@ -1,0 +1,30 @@
+// A bake request: plain structs, defaults and validation. The JSON form is in request_json.h.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/environment/environment_map.h"
+#include "core/hair/hair_model.h"
+#include "core/irradiance/irradiance_maps.h"
+#include "core/volume/transmittance.h"
+
+namespace hairbake {
+
+/// What to bake. At least one of `hair` and `environment` is given: hair alone bakes transmittance, environment alone
+/// maps. The defaults here are the defaults everywhere (command line, HTTP, schema).
+struct BakeRequest {
+    std::optional<std::string> hair;         ///< path of a hair model
+    std::optional<std::string> environment;  ///< path of an environment map
+    StrandSettings strand;
+    TransmittanceSettings transmittance;
+    EnvironmentSettings environment_settings;  ///< part of the JSON block "irradiance"
+    IrradianceSettings irradiance;
+    std::vector<std::string> outputs{"npy", "exr", "hair"};  ///< of npy, exr, hair
+};
+
+/// Throws Error(usage) naming the first field out of range, what was found and what is allowed.
+void validate(const BakeRequest& request);
+
+}  // namespace hairbake
