@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/base/vec.h"
@@ -11,9 +12,9 @@
 namespace hairbake {
 
 /// Strands in file order. V = positions.size() points, S = strand_begin.size() - 1 strands; strand s owns the points
-/// [strand_begin[s], strand_begin[s+1]), root first, at least one point each. An optional array is empty when the file has none, and
-/// then the default of the header holds for every point. Everything is kept that a writer needs to give the file
-/// back unchanged. Positions are finite and in the model's own unit, right-handed, Y up.
+/// [strand_begin[s], strand_begin[s+1]), root first, at least one point each. An optional array is empty when the file
+/// has none, and then the default of the header holds for every point. Everything is kept that a writer needs to give
+/// the file back unchanged. Positions are finite and in the model's own unit, right-handed, Y up.
 struct HairModel {
     std::vector<std::uint32_t> strand_begin;  ///< [S + 1]
     std::vector<Vec3f> positions;             ///< [V]
@@ -26,11 +27,15 @@ struct HairModel {
     float default_thickness = 0;
     float default_transparency = 0;
     Vec3f default_color{1, 1, 1};
-    std::array<char, 88> info{};  ///< the header's free text, as in the file
+    std::array<char, 88> info{};     ///< the header's free text, as in the file
+    std::uint32_t empty_arrays = 0;  ///< V = 0 only: array bits of the file, whose arrays then have no entries
 
     std::size_t strand_count() const { return strand_begin.empty() ? 0 : strand_begin.size() - 1; }
     std::size_t vertex_count() const { return positions.size(); }
 };
+
+/// "strand 12, vertex 3" for point `i` of the model, both counted from 0, the vertex within its strand.
+std::string place_of_point(const HairModel& model, std::size_t i);
 
 /// The request's `strand` block: how the model's widths and opacities are read.
 struct StrandSettings {

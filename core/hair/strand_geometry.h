@@ -19,9 +19,9 @@ struct StrandGeometry {
     std::vector<float> opacities;             ///< [V], in [0, 1]
     std::vector<std::uint8_t> segment_ok;     ///< [V]
 
-    std::size_t segment_count = 0;              ///< segments of the model, degenerate ones included
-    std::size_t degenerate_segment_count = 0;   ///< those of them that carry no extinction
-    Vec3f bounds_min, bounds_max;               ///< of the positions, widths not included
+    std::size_t segment_count = 0;             ///< segments of the model, degenerate ones included
+    std::size_t degenerate_segment_count = 0;  ///< those of them that carry no extinction
+    Vec3f bounds_min, bounds_max;              ///< of the positions, widths not included
 
     std::size_t strand_count() const { return strand_begin.size() - 1; }
     std::size_t vertex_count() const { return positions.size(); }
