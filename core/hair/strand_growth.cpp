@@ -47,13 +47,13 @@ Character draw_character(const Look& look, Random random, const Vec3d& root) {
     Character c;
     // Hair from the crown lies over hair from the sides: its layer is further out.
     c.lift = random.next(0.08, 0.5) + 0.9 * std::max(0.0, root.y) * random.next(0.5, 1);
-    const double arc_length = random.next(14, 26) * random.next(0.8, 1.1);
+    const double arc_length = random.next(14, 26) * random.next(0.9, 1.1);
     c.curl_radius = look.curl_radius * random.next(0.7, 1.3);
     c.curl_pitch = look.curl_pitch * random.next(0.85, 1.15);
     // A round helix is longer than its axis by this factor; a wave by about half of the excess.
     const double slope = two_pi * c.curl_radius / c.curl_pitch;
     c.length = arc_length / std::sqrt(1 + slope * slope * (1 - 0.5 * look.flatness));
-    c.stiffness = random.next(2.5, 5);
+    c.stiffness = random.next(1, 2.5);
     c.lean = Vec3d(random.next(-1, 1), random.next(-1, 1), random.next(-1, 1)) * 0.15;
     c.curl_phase = random.next(0, two_pi);
     return c;
@@ -76,7 +76,7 @@ Vec3d lifted(const Vec3d& point, double height) {
 void follow_path(const Character& c, const Vec3d& root, std::span<Vec3d> path) {
     const double step = path.size() > 1 ? c.length / static_cast<double>(path.size() - 1) : 0;
     const Vec3d normal = head_normal(root);
-    Vec3d heading = normalized(normal + comb_direction(root, normal) * 0.45 + c.lean);
+    Vec3d heading = normalized(normal + comb_direction(root, normal) * 0.9 + c.lean);
     path[0] = root * head_radius(root);
     for (std::size_t i = 1; i < path.size(); ++i) {
         heading = normalized(heading + Vec3d(0, -step / c.stiffness, 0));
@@ -116,8 +116,12 @@ Clump find_clump(std::uint64_t seed, const Vec3d& root_point) {
     return nearest;
 }
 
-/// Draws the path towards the clump's guide, more and more from root to tip.
+/// Draws the path towards the clump's guide, more and more from root to tip; less where the two part by more than a few
+/// centimetres (on either side of the parting), or the blend would cross the head.
 void draw_together(std::span<Vec3d> path, std::span<const Vec3d> guide, double share) {
+    double apart = 0;
+    for (std::size_t i = 0; i < path.size(); ++i) apart = std::max(apart, length(guide[i] - path[i]));
+    share *= std::exp(-apart * apart / 9);
     for (std::size_t i = 1; i < path.size(); ++i) {
         const double along = static_cast<double>(i) / static_cast<double>(path.size() - 1);
         const double weight = share * along * along * (3 - 2 * along);
