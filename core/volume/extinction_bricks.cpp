@@ -41,7 +41,8 @@ float to_storable(float value) { return std::clamp(value, -60000.0f, 60000.0f); 
 
 void store_voxel(const Tensor& tensor, std::size_t brick, std::size_t voxel, ExtinctionBricks& out) {
     const float trace = tensor[0] + tensor[1] + tensor[2];
-    const float factor = trace > 0 ? mixing_factor(tensor) : 0;
+    if (!(trace > 0)) return;
+    const float factor = mixing_factor(tensor);
     float stored_trace = 0;
     for (std::size_t c = 0; c < ExtinctionBricks::components; ++c) {
         const Imath::half half(to_storable(factor * tensor[c]));
@@ -53,19 +54,16 @@ void store_voxel(const Tensor& tensor, std::size_t brick, std::size_t voxel, Ext
 
 void fill_brick(const StrandGeometry& strands, const GridFrame& frame, const SortedStrands& sorted, std::size_t brick,
                 ExtinctionBricks& out) {
-    std::array<Tensor, ExtinctionBricks::voxels> voxels{};
-    std::uint32_t segment = ~0u;
-    Tensor piece{};
-    for (std::size_t p = sorted.piece_begin[brick]; p < sorted.piece_begin[brick + 1]; ++p) {
-        if (sorted.pieces[p].segment != segment) {
-            segment = sorted.pieces[p].segment;
-            piece = tensor_of_piece(strands, frame, segment);
+    for (std::size_t voxel = 0; voxel < ExtinctionBricks::voxels; ++voxel) {
+        const auto pieces = sorted.pieces_in(brick, voxel);
+        if (pieces.empty()) continue;
+        Tensor sum{};
+        for (const StrandPiece& piece : pieces) {
+            const Tensor tensor = tensor_of_piece(strands, frame, piece.segment);
+            for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += tensor[c];
         }
-        Tensor& voxel = voxels[sorted.pieces[p].voxel];
-        for (std::size_t c = 0; c < voxel.size(); ++c) voxel[c] += piece[c];
+        store_voxel(sum, brick, voxel, out);
     }
-    for (std::size_t v = 0; v < voxels.size(); ++v)
-        if (voxels[v][0] + voxels[v][1] + voxels[v][2] > 0) store_voxel(voxels[v], brick, v, out);
 }
 
 }  // namespace

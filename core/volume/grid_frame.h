@@ -32,6 +32,11 @@ struct GridFrame {
                    static_cast<std::uint32_t>(bricks[2]) +
                static_cast<std::uint32_t>(k >> 3);
     }
+    /// Brick coordinates of a linear brick index.
+    std::array<int, 3> brick_coordinates(std::uint32_t linear) const {
+        const auto ny = static_cast<std::uint32_t>(bricks[1]), nz = static_cast<std::uint32_t>(bricks[2]);
+        return {static_cast<int>(linear / (ny * nz)), static_cast<int>(linear / nz % ny), static_cast<int>(linear % nz)};
+    }
     /// Position of voxel (i, j, k) inside its brick, as in an OpenVDB leaf: z fastest.
     static int voxel_in_brick(int i, int j, int k) { return (i & 7) << 6 | (j & 7) << 3 | (k & 7); }
 };

@@ -11,10 +11,8 @@ constexpr std::uint32_t kPad = 16;
 
 /// First voxel of brick number `slot`.
 std::array<int, 3> first_voxel(const GridFrame& frame, const SortedStrands& sorted, std::size_t slot) {
-    const std::uint32_t linear = sorted.bricks[slot];
-    const auto nz = static_cast<std::uint32_t>(frame.bricks[2]), ny = static_cast<std::uint32_t>(frame.bricks[1]);
-    return {static_cast<int>(8 * (linear / (ny * nz))), static_cast<int>(8 * (linear / nz % ny)),
-            static_cast<int>(8 * (linear % nz))};
+    const std::array<int, 3> brick = frame.brick_coordinates(sorted.bricks[slot]);
+    return {8 * brick[0], 8 * brick[1], 8 * brick[2]};
 }
 
 /// Where each brick's eight slices go: number of the tile that holds slice k of the brick.

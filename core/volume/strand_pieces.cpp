@@ -1,7 +1,9 @@
 #include "core/volume/strand_pieces.h"
 
+#include <array>
 #include <atomic>
 #include <memory>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -100,6 +102,24 @@ void sort_pieces(const StrandGeometry& strands, const GridFrame& frame, SortedSt
     });
 }
 
+/// Sorts the pieces of every brick by voxel.
+void sort_within_bricks(SortedStrands& sorted) {
+    sorted.voxel_end.resize(sorted.brick_count() * 512);
+    parallel_for(sorted.brick_count(), 64, [&](std::size_t begin, std::size_t end) {
+        std::vector<StrandPiece> unsorted;
+        for (std::size_t b = begin; b < end; ++b) {
+            StrandPiece* pieces = sorted.pieces.data() + sorted.piece_begin[b];
+            unsorted.assign(pieces, sorted.pieces.data() + sorted.piece_begin[b + 1]);
+            std::array<std::uint32_t, 512> place{};
+            for (const StrandPiece& piece : unsorted) ++place[piece.voxel];
+            std::uint32_t sum = 0;
+            for (auto& p : place) sum += std::exchange(p, sum);
+            for (const StrandPiece& piece : unsorted) pieces[place[piece.voxel]++] = piece;
+            std::copy(place.begin(), place.end(), sorted.voxel_end.begin() + static_cast<std::ptrdiff_t>(b * 512));
+        }
+    });
+}
+
 void sort_vertices(const StrandGeometry& strands, const GridFrame& frame, SortedStrands& sorted) {
     std::vector<std::vector<std::uint32_t>> places(kChunks, std::vector<std::uint32_t>(sorted.brick_count()));
     const auto slot = [&](std::uint32_t brick) { return static_cast<std::size_t>(sorted.slot_of_brick[brick]); };
@@ -123,6 +143,7 @@ SortedStrands sort_strands(const StrandGeometry& strands, const GridFrame& frame
     find_occupied_bricks(strands, frame, sorted);
     progress.check();
     sort_pieces(strands, frame, sorted);
+    sort_within_bricks(sorted);
     progress.check();
     sort_vertices(strands, frame, sorted);
     return sorted;

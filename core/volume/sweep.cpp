@@ -91,16 +91,11 @@ HWY_INLINE V depth_at(const RayPath& path, const float* depth, const float* slab
                       hn::Vec<I> texel) {
     const F d;
     const I di;
-    const auto half = hn::Set(d, 0.5f);
-    const auto ray_u = hn::Sub(hn::NegMulAdd(s, hn::Set(d, path.slope_u), u), hn::Add(half, hn::Set(d, static_cast<float>(path.base_u))));
-    const auto ray_v = hn::Sub(hn::NegMulAdd(s, hn::Set(d, path.slope_v), v), hn::Add(half, hn::Set(d, static_cast<float>(path.base_v))));
+    const auto ray_u = hn::Sub(hn::NegMulAdd(s, hn::Set(d, path.slope_u), u), hn::Set(d, static_cast<float>(path.base_u)));
+    const auto ray_v = hn::Sub(hn::NegMulAdd(s, hn::Set(d, path.slope_v), v), hn::Set(d, static_cast<float>(path.base_v)));
     const auto column = hn::ConvertTo(di, ray_u), row = hn::ConvertTo(di, ray_v);  // both are positive
-    const auto a = hn::Sub(ray_u, hn::ConvertTo(d, column)), b = hn::Sub(ray_v, hn::ConvertTo(d, row));
     const auto at = hn::Add(hn::Mul(row, hn::Set(di, path.stride)), column);
-    const auto d00 = hn::GatherIndex(d, depth, at), d01 = hn::GatherIndex(d, depth + 1, at);
-    const auto d10 = hn::GatherIndex(d, depth + path.stride, at), d11 = hn::GatherIndex(d, depth + path.stride + 1, at);
-    const auto above = hn::MulAdd(a, hn::Sub(d01, d00), d00), below = hn::MulAdd(a, hn::Sub(d11, d10), d10);
-    const auto before = hn::MulAdd(b, hn::Sub(below, above), above);
+    const auto before = hn::GatherIndex(d, depth, at);
     return hn::MulAdd(inside, hn::GatherIndex(d, slab, texel), before);
 }
 

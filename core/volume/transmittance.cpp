@@ -10,11 +10,15 @@
 #include "core/volume/slice_layout.h"
 #include "core/volume/strand_pieces.h"
 #include "core/volume/sweep.h"
+#include "core/volume/near_field.h"
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 
 namespace hairbake {
+namespace {
+}
 namespace {
 struct Clock { std::chrono::steady_clock::time_point t = std::chrono::steady_clock::now(); void lap(const char* n){ auto u=std::chrono::steady_clock::now(); if(getenv("HB_T")) std::fprintf(stderr,"%-10s %.3f\n",n,std::chrono::duration<double>(u-t).count()); t=u; } };
 
@@ -81,10 +85,15 @@ Transmittance bake_transmittance_volume(const StrandGeometry& strands, const Tra
         });
         clock.lap("merge");
     }
-    result.average.resize(strands.vertex_count());
-    for (std::size_t v = 0; v < result.average.size(); ++v)
-        result.average[v] = static_cast<float>(total[v * 4]) / scale / static_cast<float>(settings.directions);
-    clock.lap("end");
+    std::vector<AngularMean> means(strands.vertex_count());
+    const float k = 1 / (scale * static_cast<float>(settings.directions));
+    for (std::size_t v = 0; v < means.size(); ++v) {
+        const std::int32_t* sum = &total[v * SweepSums::components];
+        means[v] = {static_cast<float>(sum[0]) * k, Vec3f(static_cast<float>(sum[1]), static_cast<float>(sum[2]), static_cast<float>(sum[3])) * (3 * k)};
+    }
+    clock.lap("means");
+    result.average = correct_near_field(strands, frame, sorted, bricks, means, progress);
+    clock.lap("near");
     return result;
 }
 

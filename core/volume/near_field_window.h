@@ -1,0 +1,25 @@
+// The window of the near-field correction and what the grid's voxels weigh in it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace hairbake {
+
+/// q(d) = (1 - d^2 / r^2)^2 for d < r. weight[o] = integral over voxel o around the vertex's voxel of q(d) / d^2,
+/// averaged over the vertex's place in its voxel; o = 9 (i + 1) + 3 (j + 1) + (k + 1) for the offset (i, j, k); padded with zeros.
+struct NearFieldWindow {
+    static constexpr float radius = 0.75f;  ///< r in voxels: below 1, so that neighbouring voxels suffice
+    static constexpr std::size_t offsets = 27, padded = 32;
+
+    /// -ln A of a lone straight thin strand on the grid after the correction, over opacity * width / h: averaged over
+    /// directions and places of the strand. tests/core/volume derives it.
+    static constexpr float own_strand_beyond = 0.05f;
+
+    alignas(64) std::array<float, padded> weight{};
+    alignas(64) std::array<float, padded> direction_x{}, direction_y{}, direction_z{};  ///< unit, 0 for the own voxel
+
+    NearFieldWindow();
+};
+
+}  // namespace hairbake
