@@ -15,14 +15,12 @@ namespace {
 /// One voxel while it is filled: the six components, padded to a power of two.
 using Tensor = std::array<float, 8>;
 
-/// The tensor that one piece of `segment` adds.
-Tensor tensor_of_piece(const StrandGeometry& strands, const GridFrame& frame, std::uint32_t segment) {
-    const Vec3f step = cut_segment(strands, frame, segment).step;
-    const float width = 0.5f * (strands.widths[segment] + strands.widths[segment + 1]);
-    const float opacity = 0.5f * (strands.opacities[segment] + strands.opacities[segment + 1]);
-    const float weight = opacity * width / static_cast<float>(frame.voxel_size) / length(step);
-    const Vec3f s = weight * step;
-    return {s.x * step.x, s.y * step.y, s.z * step.z, s.x * step.y, s.x * step.z, s.y * step.z, 0, 0};
+/// Adds what a piece brings: weight * length * t t^T.
+void add_piece(const StrandPiece& piece, Tensor& sum) {
+    const Vec3f& step = piece.step;
+    const Vec3f s = piece.weight / length(step) * step;
+    const Tensor added{s.x * step.x, s.y * step.y, s.z * step.z, s.x * step.y, s.x * step.z, s.y * step.z, 0, 0};
+    for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += added[c];
 }
 
 /// sqrt(tr (tr - l.T.l)) is exact where all strands of a voxel are parallel (tr T^2 = tr^2) and too large where they are
@@ -52,30 +50,25 @@ void store_voxel(const Tensor& tensor, std::size_t brick, std::size_t voxel, Ext
     out.trace[brick * ExtinctionBricks::voxels + voxel] = stored_trace;
 }
 
-void fill_brick(const StrandGeometry& strands, const GridFrame& frame, const SortedStrands& sorted, std::size_t brick,
-                ExtinctionBricks& out) {
+void fill_brick(const SortedStrands& sorted, std::size_t brick, ExtinctionBricks& out) {
     for (std::size_t voxel = 0; voxel < ExtinctionBricks::voxels; ++voxel) {
         const auto pieces = sorted.pieces_in(brick, voxel);
         if (pieces.empty()) continue;
         Tensor sum{};
-        for (const StrandPiece& piece : pieces) {
-            const Tensor tensor = tensor_of_piece(strands, frame, piece.segment);
-            for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += tensor[c];
-        }
+        for (const StrandPiece& piece : pieces) add_piece(piece, sum);
         store_voxel(sum, brick, voxel, out);
     }
 }
 
 }  // namespace
 
-ExtinctionBricks deposit_strands(const StrandGeometry& strands, const GridFrame& frame, const SortedStrands& sorted,
-                                 Progress& progress) {
+ExtinctionBricks deposit_strands(const SortedStrands& sorted, Progress& progress) {
     ExtinctionBricks bricks;
     bricks.half.resize(sorted.brick_count() * ExtinctionBricks::components * ExtinctionBricks::voxels);
     bricks.trace.resize(sorted.brick_count() * ExtinctionBricks::voxels);
     parallel_for(sorted.brick_count(), 16, [&](std::size_t begin, std::size_t end) {
         progress.check();
-        for (std::size_t b = begin; b < end; ++b) fill_brick(strands, frame, sorted, b, bricks);
+        for (std::size_t b = begin; b < end; ++b) fill_brick(sorted, b, bricks);
     });
     return bricks;
 }

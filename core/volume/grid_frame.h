@@ -32,6 +32,10 @@ struct GridFrame {
                    static_cast<std::uint32_t>(bricks[2]) +
                static_cast<std::uint32_t>(k >> 3);
     }
+    /// Linear index of the brick that holds grid position g.
+    std::uint32_t brick_at(const Vec3f& g) const {
+        return brick_of(static_cast<int>(g.x), static_cast<int>(g.y), static_cast<int>(g.z));
+    }
     /// Brick coordinates of a linear brick index.
     std::array<int, 3> brick_coordinates(std::uint32_t linear) const {
         const auto ny = static_cast<std::uint32_t>(bricks[1]), nz = static_cast<std::uint32_t>(bricks[2]);

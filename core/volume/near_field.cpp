@@ -19,10 +19,11 @@ HWY_BEFORE_NAMESPACE();
 namespace hairbake::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using F = hn::CappedTag<float, 16>;
+using I = hn::RebindToSigned<F>;
 
 /// Pieces that reach into a vertex's window, packed for the integral.
 struct Reaching {
-    static constexpr std::size_t capacity = 1024;
+    static constexpr std::size_t capacity = 1024;  ///< integrated and emptied when full
     alignas(64) float foot[capacity + 16];       ///< s0: piece centre along the piece's axis, from the vertex's foot point
     alignas(64) float distance2[capacity + 16];  ///< D^2: squared distance of the axis from the vertex
     alignas(64) float half_length[capacity + 16];
@@ -67,21 +68,23 @@ float integrate(const Reaching& pieces, float average) {
     return hn::GetLane(hn::SumOfLanes(d, sum));
 }
 
-/// Packs those of the pieces [begin, end) that come within the window of the vertex.
-void select(const Neighborhood& near, std::size_t begin, std::size_t end, const Vec3f& x, const AdjacentSegments& own,
-            const Vec3f& slope, Reaching& out) {
+/// Packs those of the pieces [begin, end) that come within the window of the vertex at x. Returns the integral of what had to make room.
+float select(const Neighborhood& near, std::size_t begin, std::size_t end, const Vec3f& x, const AdjacentSegments& own,
+             const AngularMean& mean, Reaching& out) {
+    const Vec3f& slope = mean.slope;
+    float integral = 0;
     const F d;
     const hn::RebindToSigned<F> di;
     constexpr float r2 = NearFieldWindow::radius * NearFieldWindow::radius;
-    for (std::size_t i = begin; i < end && out.count < Reaching::capacity; i += hn::Lanes(d)) {
+    for (std::size_t i = begin; i < end; i += hn::Lanes(d)) {
         const auto cx = hn::Sub(hn::LoadU(d, &near.centre_x[i]), hn::Set(d, x.x));
         const auto cy = hn::Sub(hn::LoadU(d, &near.centre_y[i]), hn::Set(d, x.y));
         const auto cz = hn::Sub(hn::LoadU(d, &near.centre_z[i]), hn::Set(d, x.z));
         const auto tx = hn::LoadU(d, &near.axis_x[i]), ty = hn::LoadU(d, &near.axis_y[i]), tz = hn::LoadU(d, &near.axis_z[i]);
         const auto foot = hn::MulAdd(cx, tx, hn::MulAdd(cy, ty, hn::Mul(cz, tz)));
         const auto centre2 = hn::MulAdd(cx, cx, hn::MulAdd(cy, cy, hn::Mul(cz, cz)));
-        const auto least = hn::LoadU(d, &near.radius2[i]);
-        const auto distance2 = hn::Max(hn::NegMulAdd(foot, foot, centre2), least);
+        const auto weight = hn::LoadU(d, &near.weight[i]), least = hn::Mul(hn::Set(d, 0.5f), weight);
+        const auto distance2 = hn::Max(hn::NegMulAdd(foot, foot, centre2), hn::Mul(least, least));
         const auto half_length = hn::LoadU(d, &near.half_length[i]);
         const auto beyond = hn::Max(hn::Zero(d), hn::Sub(hn::Abs(foot), half_length));
         const auto segment = hn::LoadU(di, &near.segment[i]);
@@ -91,26 +94,44 @@ void select(const Neighborhood& near, std::size_t begin, std::size_t end, const 
         if (hn::AllFalse(d, keep)) continue;
         const auto slope_axis = hn::MulAdd(tx, hn::Set(d, slope.x), hn::MulAdd(ty, hn::Set(d, slope.y), hn::Mul(tz, hn::Set(d, slope.z))));
         const auto slope_centre = hn::MulAdd(cx, hn::Set(d, slope.x), hn::MulAdd(cy, hn::Set(d, slope.y), hn::Mul(cz, hn::Set(d, slope.z))));
+        if (out.count > Reaching::capacity - hn::Lanes(d)) {
+            integral += integrate(out, mean.average);
+            out.count = 0;
+        }
         const std::size_t at = out.count;
         hn::CompressStore(hn::NegMulAdd(foot, slope_axis, slope_centre), keep, d, out.slope_foot + at);
         hn::CompressStore(slope_axis, keep, d, out.slope_axis + at);
         hn::CompressStore(foot, keep, d, out.foot + at);
         hn::CompressStore(distance2, keep, d, out.distance2 + at);
         hn::CompressStore(half_length, keep, d, out.half_length + at);
-        out.count += hn::CompressStore(hn::LoadU(d, &near.weight[i]), keep, d, out.weight + at);
+        out.count += hn::CompressStore(weight, keep, d, out.weight + at);
     }
+    return integral;
 }
 
-/// F_grid of one vertex: the voxels around it, each seen in the direction of its centre.
-float grid_depth(const float* weighted, const NearFieldWindow& window, const AngularMean& mean) {
-    const hn::CappedTag<float, 16> d;
+/// F_grid of a vertex in local voxel `voxel`: the voxels around it, each seen in the direction of its centre.
+float grid_depth(const Neighborhood& near, int voxel, const NearFieldWindow& window, const AngularMean& mean) {
+    const F d;
+    const I di;
+    const Vec3f slope = mean.slope / mean.average;
     auto sum = hn::Zero(d);
     for (std::size_t o = 0; o < NearFieldWindow::padded; o += hn::Lanes(d)) {
-        auto slope = hn::Mul(hn::Load(d, window.direction_x.data() + o), hn::Set(d, mean.slope.x / mean.average));
-        slope = hn::MulAdd(hn::Load(d, window.direction_y.data() + o), hn::Set(d, mean.slope.y / mean.average), slope);
-        slope = hn::MulAdd(hn::Load(d, window.direction_z.data() + o), hn::Set(d, mean.slope.z / mean.average), slope);
-        const auto visible = hn::Max(hn::Zero(d), hn::Add(hn::Set(d, 1.0f), slope));
-        sum = hn::MulAdd(hn::Load(d, weighted + o), visible, sum);
+        const auto x = hn::Load(d, window.direction_x.data() + o), y = hn::Load(d, window.direction_y.data() + o);
+        const auto z = hn::Load(d, window.direction_z.data() + o);
+        const auto at = hn::Add(hn::Load(di, window.step.data() + o), hn::Set(di, voxel));
+        const auto component = [&](std::size_t c) { return hn::GatherIndex(d, near.tensor[c].data(), at); };
+        const auto trace = component(6);
+        auto across = hn::Mul(hn::Mul(x, y), component(3));
+        across = hn::MulAdd(hn::Mul(x, z), component(4), across);
+        across = hn::MulAdd(hn::Mul(y, z), component(5), across);
+        auto along = hn::Add(across, across);
+        along = hn::MulAdd(hn::Mul(x, x), component(0), along);
+        along = hn::MulAdd(hn::Mul(y, y), component(1), along);
+        along = hn::MulAdd(hn::Mul(z, z), component(2), along);
+        const auto depth = hn::Sqrt(hn::Mul(trace, hn::Max(hn::Zero(d), hn::Sub(trace, along))));
+        const auto toward = hn::MulAdd(x, hn::Set(d, slope.x), hn::MulAdd(y, hn::Set(d, slope.y), hn::Mul(z, hn::Set(d, slope.z))));
+        const auto visible = hn::Max(hn::Zero(d), hn::Add(hn::Set(d, 1.0f), toward));
+        sum = hn::MulAdd(hn::Mul(hn::Load(d, window.weight.data() + o), depth), visible, sum);
     }
     return hn::GetLane(hn::SumOfLanes(d, sum));
 }
@@ -125,19 +146,17 @@ void correct_vertices(const StrandGeometry& strands, const GridFrame& frame, std
         if (!(mean.average > 0)) continue;
         const Vec3f x = frame.to_grid(strands.positions[v]) - near.corner;
         const AdjacentSegments own = adjacent_segments(strands, v);
-        const int i = static_cast<int>(x.x), j = static_cast<int>(x.y), k = static_cast<int>(x.z);
+        const int i = Neighborhood::cell_of(x.x), j = Neighborhood::cell_of(x.y), k = Neighborhood::cell_of(x.z);
         float exact = 0;
         pieces.count = 0;
         for (int row_i = i - 1; row_i <= i + 1; ++row_i)
             for (int row_j = j - 1; row_j <= j + 1; ++row_j) {
                 const auto cell = static_cast<std::size_t>(Neighborhood::cell(row_i, row_j, k));
-                select(near, near.begin[cell - 1], near.begin[cell + 2], x, own, mean.slope, pieces);
-                if (pieces.count < Reaching::capacity / 2) continue;
-                exact += integrate(pieces, mean.average);
-                pieces.count = 0;
+                exact += select(near, near.begin[cell - 1], near.begin[cell + 2], x, own, mean, pieces);
             }
         exact += integrate(pieces, mean.average);
-        const float grid = grid_depth(near.voxel_depth(i, j, k), window, mean);
+        const int voxel = Neighborhood::voxel(static_cast<int>(x.x), static_cast<int>(x.y), static_cast<int>(x.z));
+        const float grid = grid_depth(near, voxel, window, mean);
         const float own_depth = NearFieldWindow::own_strand_beyond * strands.opacities[v] * strands.widths[v] /
                                 static_cast<float>(frame.voxel_size);
         const float four_pi = 4 * std::numbers::pi_v<float>;
@@ -166,7 +185,7 @@ std::vector<float> correct_near_field(const StrandGeometry& strands, const GridF
             const std::span<const std::uint32_t> vertices(sorted.vertices.data() + sorted.vertex_begin[b],
                                                           sorted.vertex_begin[b + 1] - sorted.vertex_begin[b]);
             if (vertices.empty()) continue;
-            near.collect(strands, frame, sorted, bricks, window, b);
+            near.collect(frame, sorted, bricks, b);
             HWY_DYNAMIC_DISPATCH(correct_vertices)(strands, frame, vertices, near, window, means, corrected);
         }
     });

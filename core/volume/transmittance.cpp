@@ -57,7 +57,7 @@ Transmittance bake_transmittance_volume(const StrandGeometry& strands, const Tra
     result.voxel_size = frame.voxel_size;
     const SortedStrands sorted = sort_strands(strands, frame, progress);
     clock.lap("sort");
-    const ExtinctionBricks bricks = deposit_strands(strands, frame, sorted, progress);
+    const ExtinctionBricks bricks = deposit_strands(sorted, progress);
     clock.lap("deposit");
     const float scale = sweep_scale(settings.directions);
     std::vector<std::int32_t> total(strands.vertex_count() * SweepSums::components);
