@@ -15,17 +15,24 @@ namespace {
 /// One voxel while it is filled: the six components, padded to a power of two.
 using Tensor = std::array<float, 8>;
 
+/// A strand crosses a ray's way through a voxel at most once: its voxel lets 1 - f through, not e^-f, f being opacity *
+/// width * crossing length * sine / h^2. -ln(1 - f) = f (1 + f / 2 + ...), and f / 2 averaged with f over random lines
+/// through a cube is (opacity * width / h) * chord / 2 * (2/3) / (pi/4), with the cube's mean chord through a random
+/// point, 0.897. With this the mean over random placements is e^-(mean extinction), as it must be (E[(1 - f)^n] = e^(-f
+/// mean n)).
+constexpr float disjoint_share = 0.381f;
+
 /// Adds what a piece brings: weight * length * t t^T.
 void add_piece(const StrandPiece& piece, Tensor& sum) {
     const Vec3f& step = piece.step;
-    const Vec3f s = piece.weight / length(step) * step;
+    const Vec3f s = piece.weight * (1 + disjoint_share * piece.weight) / length(step) * step;
     const Tensor added{s.x * step.x, s.y * step.y, s.z * step.z, s.x * step.y, s.x * step.z, s.y * step.z, 0, 0};
     for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += added[c];
 }
 
-/// sqrt(tr (tr - l.T.l)) is exact where all strands of a voxel are parallel (tr T^2 = tr^2) and too large where they are
-/// not: by sqrt(2/3) / (pi/4) in isotropic voxels (tr T^2 = tr^2 / 3). The factor, linear in tr T^2 between
-/// these two cases, takes the excess out.
+/// sqrt(tr (tr - l.T.l)) is exact where all strands of a voxel are parallel (tr T^2 = tr^2) and too large where they
+/// are not: by sqrt(2/3) / (pi/4) in isotropic voxels (tr T^2 = tr^2 / 3). The factor, linear in tr T^2 between these
+/// two cases, takes the excess out.
 float mixing_factor(const Tensor& t) {
     const float tr = t[0] + t[1] + t[2];
     const float square = t[0] * t[0] + t[1] * t[1] + t[2] * t[2] + 2 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]);

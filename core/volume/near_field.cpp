@@ -24,10 +24,10 @@ using I = hn::RebindToSigned<F>;
 /// Pieces that reach into a vertex's window, packed for the integral.
 struct Reaching {
     static constexpr std::size_t capacity = 1024;  ///< integrated and emptied when full
-    alignas(64) float foot[capacity + 16];       ///< s0: piece centre along the piece's axis, from the vertex's foot point
+    alignas(64) float foot[capacity + 16];  ///< s0: piece centre along the piece's axis, from the vertex's foot point
     alignas(64) float distance2[capacity + 16];  ///< D^2: squared distance of the axis from the vertex
     alignas(64) float half_length[capacity + 16];
-    alignas(64) float weight[capacity + 16];     ///< opacity * width / h
+    alignas(64) float weight[capacity + 16];      ///< opacity * width / h
     alignas(64) float slope_foot[capacity + 16];  ///< slope . (foot point - vertex)
     alignas(64) float slope_axis[capacity + 16];  ///< slope . axis
     std::size_t count = 0;
@@ -50,17 +50,21 @@ float integrate(const Reaching& pieces, float average) {
         const auto low = hn::Max(hn::Sub(foot, half_length), hn::Neg(limit));
         const auto high = hn::Min(hn::Add(foot, half_length), limit);
         const auto distance = hn::Sqrt(distance2);
-        const auto d_low = hn::Sqrt(hn::MulAdd(low, low, distance2)), d_high = hn::Sqrt(hn::MulAdd(high, high, distance2));
-        const auto log_ratio = hn::Log(d, hn::Div(hn::Max(hn::Add(high, d_high), hn::Set(d, 1e-20f)), hn::Max(hn::Add(low, d_low), hn::Set(d, 1e-20f))));
+        const auto d_low = hn::Sqrt(hn::MulAdd(low, low, distance2)),
+                   d_high = hn::Sqrt(hn::MulAdd(high, high, distance2));
+        const auto log_ratio = hn::Log(d, hn::Div(hn::Max(hn::Add(high, d_high), hn::Set(d, 1e-20f)),
+                                                  hn::Max(hn::Add(low, d_low), hn::Set(d, 1e-20f))));
         const auto peak = hn::Div(hn::Sub(hn::Div(high, d_high), hn::Div(low, d_low)), distance);
         const auto taper = hn::Mul(log_ratio, hn::Set(d, -2 / r2));
-        const auto rise = hn::Mul(hn::MulAdd(distance2, log_ratio, hn::Sub(hn::Mul(high, d_high), hn::Mul(low, d_low))), hn::Set(d, 0.5f / (r2 * r2)));
+        const auto rise = hn::Mul(hn::MulAdd(distance2, log_ratio, hn::Sub(hn::Mul(high, d_high), hn::Mul(low, d_low))),
+                                  hn::Set(d, 0.5f / (r2 * r2)));
         const auto integral = hn::Max(zero, hn::MulAdd(distance, hn::Add(taper, rise), peak));
         // The integrand peaks at the foot point: the direction is taken half-way from the middle to the nearest point.
         const auto nearest = hn::Min(hn::Max(low, zero), high), middle = hn::Mul(half, hn::Add(low, high));
         const auto along = hn::Mul(half, hn::Add(nearest, middle));
         const auto toward = hn::Sqrt(hn::MulAdd(along, along, distance2));
-        const auto slope = hn::Div(hn::MulAdd(along, hn::Load(d, pieces.slope_axis + i), hn::Load(d, pieces.slope_foot + i)), toward);
+        const auto slope =
+            hn::Div(hn::MulAdd(along, hn::Load(d, pieces.slope_axis + i), hn::Load(d, pieces.slope_foot + i)), toward);
         const auto visible = hn::Max(zero, hn::MulAdd(slope, inverse_average, hn::Set(d, 1.0f)));
         const auto term = hn::Mul(hn::Mul(hn::Load(d, pieces.weight + i), integral), visible);
         sum = hn::Add(sum, hn::IfThenElseZero(hn::And(used, hn::Gt(high, low)), term));
@@ -68,7 +72,8 @@ float integrate(const Reaching& pieces, float average) {
     return hn::GetLane(hn::SumOfLanes(d, sum));
 }
 
-/// Packs those of the pieces [begin, end) that come within the window of the vertex at x. Returns the integral of what had to make room.
+/// Packs those of the pieces [begin, end) that come within the window of the vertex at x. Returns the integral of what
+/// had to make room.
 float select(const Neighborhood& near, std::size_t begin, std::size_t end, const Vec3f& x, const AdjacentSegments& own,
              const AngularMean& mean, Reaching& out) {
     const Vec3f& slope = mean.slope;
@@ -80,7 +85,8 @@ float select(const Neighborhood& near, std::size_t begin, std::size_t end, const
         const auto cx = hn::Sub(hn::LoadU(d, &near.centre_x[i]), hn::Set(d, x.x));
         const auto cy = hn::Sub(hn::LoadU(d, &near.centre_y[i]), hn::Set(d, x.y));
         const auto cz = hn::Sub(hn::LoadU(d, &near.centre_z[i]), hn::Set(d, x.z));
-        const auto tx = hn::LoadU(d, &near.axis_x[i]), ty = hn::LoadU(d, &near.axis_y[i]), tz = hn::LoadU(d, &near.axis_z[i]);
+        const auto tx = hn::LoadU(d, &near.axis_x[i]), ty = hn::LoadU(d, &near.axis_y[i]),
+                   tz = hn::LoadU(d, &near.axis_z[i]);
         const auto foot = hn::MulAdd(cx, tx, hn::MulAdd(cy, ty, hn::Mul(cz, tz)));
         const auto centre2 = hn::MulAdd(cx, cx, hn::MulAdd(cy, cy, hn::Mul(cz, cz)));
         const auto weight = hn::LoadU(d, &near.weight[i]), least = hn::Mul(hn::Set(d, 0.5f), weight);
@@ -88,12 +94,15 @@ float select(const Neighborhood& near, std::size_t begin, std::size_t end, const
         const auto half_length = hn::LoadU(d, &near.half_length[i]);
         const auto beyond = hn::Max(hn::Zero(d), hn::Sub(hn::Abs(foot), half_length));
         const auto segment = hn::LoadU(di, &near.segment[i]);
-        const auto is_other = hn::Or(hn::Lt(segment, hn::Set(di, static_cast<std::int32_t>(own.first))), hn::Gt(segment, hn::Set(di, static_cast<std::int32_t>(own.last))));
+        const auto is_other = hn::Or(hn::Lt(segment, hn::Set(di, static_cast<std::int32_t>(own.first))),
+                                     hn::Gt(segment, hn::Set(di, static_cast<std::int32_t>(own.last))));
         auto keep = hn::And(hn::FirstN(d, end - i), hn::Lt(hn::MulAdd(beyond, beyond, distance2), hn::Set(d, r2)));
         keep = hn::And(hn::RebindMask(d, is_other), keep);
         if (hn::AllFalse(d, keep)) continue;
-        const auto slope_axis = hn::MulAdd(tx, hn::Set(d, slope.x), hn::MulAdd(ty, hn::Set(d, slope.y), hn::Mul(tz, hn::Set(d, slope.z))));
-        const auto slope_centre = hn::MulAdd(cx, hn::Set(d, slope.x), hn::MulAdd(cy, hn::Set(d, slope.y), hn::Mul(cz, hn::Set(d, slope.z))));
+        const auto slope_axis =
+            hn::MulAdd(tx, hn::Set(d, slope.x), hn::MulAdd(ty, hn::Set(d, slope.y), hn::Mul(tz, hn::Set(d, slope.z))));
+        const auto slope_centre =
+            hn::MulAdd(cx, hn::Set(d, slope.x), hn::MulAdd(cy, hn::Set(d, slope.y), hn::Mul(cz, hn::Set(d, slope.z))));
         if (out.count > Reaching::capacity - hn::Lanes(d)) {
             integral += integrate(out, mean.average);
             out.count = 0;
@@ -129,7 +138,8 @@ float grid_depth(const Neighborhood& near, int voxel, const NearFieldWindow& win
         along = hn::MulAdd(hn::Mul(y, y), component(1), along);
         along = hn::MulAdd(hn::Mul(z, z), component(2), along);
         const auto depth = hn::Sqrt(hn::Mul(trace, hn::Max(hn::Zero(d), hn::Sub(trace, along))));
-        const auto toward = hn::MulAdd(x, hn::Set(d, slope.x), hn::MulAdd(y, hn::Set(d, slope.y), hn::Mul(z, hn::Set(d, slope.z))));
+        const auto toward =
+            hn::MulAdd(x, hn::Set(d, slope.x), hn::MulAdd(y, hn::Set(d, slope.y), hn::Mul(z, hn::Set(d, slope.z))));
         const auto visible = hn::Max(hn::Zero(d), hn::Add(hn::Set(d, 1.0f), toward));
         sum = hn::MulAdd(hn::Mul(hn::Load(d, window.weight.data() + o), depth), visible, sum);
     }

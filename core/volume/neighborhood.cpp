@@ -37,7 +37,8 @@ void Neighborhood::find_places(const GridFrame& frame, const SortedStrands& sort
                 if (slot < 0) continue;
                 const auto inside = static_cast<std::uint32_t>(inner(i) << 6 | inner(j) << 3 | inner(k));
                 if (sorted.pieces_in(static_cast<std::size_t>(slot), inside).empty()) continue;
-                places_.push_back({static_cast<std::uint32_t>(slot), inside, static_cast<std::uint32_t>(voxel(i, j, k))});
+                places_.push_back(
+                    {static_cast<std::uint32_t>(slot), inside, static_cast<std::uint32_t>(voxel(i, j, k))});
             }
         }
 }

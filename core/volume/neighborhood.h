@@ -13,7 +13,8 @@
 
 namespace hairbake {
 
-/// Local space: voxels, origin at `corner`, one voxel below the brick on every axis: the brick's own voxels are 1 to 8, the halo is 0 and
+/// Local space: voxels, origin at `corner`, one voxel below the brick on every axis: the brick's own voxels are 1 to 8,
+/// the halo is 0 and
 /// 9. Reused from brick to brick; one per thread.
 struct Neighborhood {
     static constexpr int side = 10;  ///< voxels

@@ -65,11 +65,9 @@ void count_items(const StrandGeometry& strands, const GridFrame& frame, Counts& 
         vertex_count.assign(frame.brick_count(), 0);
         for_each_piece(strands, frame, begin, end,
                        [&](const StrandPiece&, std::uint32_t brick) { ++piece_count[brick]; });
-        for_each_vertex(strands, frame, begin, end,
-                        [&](std::uint32_t, std::uint32_t brick) { ++vertex_count[brick]; });
+        for_each_vertex(strands, frame, begin, end, [&](std::uint32_t, std::uint32_t brick) { ++vertex_count[brick]; });
     });
-    for (Counts* counts : {&pieces, &vertices})
-        std::erase_if(*counts, [](const auto& chunk) { return chunk.empty(); });
+    for (Counts* counts : {&pieces, &vertices}) std::erase_if(*counts, [](const auto& chunk) { return chunk.empty(); });
 }
 
 void find_occupied_bricks(const Counts& pieces, const Counts& vertices, SortedStrands& sorted) {
@@ -85,8 +83,8 @@ void find_occupied_bricks(const Counts& pieces, const Counts& vertices, SortedSt
     }
 }
 
-/// Turns the counts into the place where each chunk writes its first item of each brick; returns the beginnings of the occupied
-/// bricks. Throws Error(out_of_resources).
+/// Turns the counts into the place where each chunk writes its first item of each brick; returns the beginnings of the
+/// occupied bricks. Throws Error(out_of_resources).
 std::vector<std::uint32_t> counts_to_places(Counts& counts, const std::vector<std::uint32_t>& bricks) {
     std::vector<std::uint32_t> begin;
     std::uint64_t sum = 0;
@@ -113,9 +111,8 @@ void place_items(const StrandGeometry& strands, const GridFrame& frame, Counts& 
         for_each_piece(strands, frame, begin, end, [&](const StrandPiece& piece, std::uint32_t brick) {
             sorted.pieces[piece_place[brick]++] = piece;
         });
-        for_each_vertex(strands, frame, begin, end, [&](std::uint32_t v, std::uint32_t brick) {
-            sorted.vertices[vertex_place[brick]++] = v;
-        });
+        for_each_vertex(strands, frame, begin, end,
+                        [&](std::uint32_t v, std::uint32_t brick) { sorted.vertices[vertex_place[brick]++] = v; });
     });
 }
 
@@ -125,7 +122,8 @@ void sort_within_bricks(SortedStrands& sorted) {
     parallel_for(sorted.brick_count(), 64, [&](std::size_t begin, std::size_t end) {
         std::vector<StrandPiece> unsorted;
         for (std::size_t b = begin; b < end; ++b) {
-            unsorted.assign(sorted.pieces.data() + sorted.piece_begin[b], sorted.pieces.data() + sorted.piece_begin[b + 1]);
+            unsorted.assign(sorted.pieces.data() + sorted.piece_begin[b],
+                            sorted.pieces.data() + sorted.piece_begin[b + 1]);
             std::array<std::uint32_t, 512> place{};
             for (const StrandPiece& piece : unsorted) ++place[static_cast<std::size_t>(piece.voxel_in_brick())];
             std::uint32_t sum = sorted.piece_begin[b];

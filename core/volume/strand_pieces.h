@@ -27,8 +27,8 @@ struct StrandPiece {
 };
 
 /// Occupied bricks in ascending linear index, and what lies in each: brick number b holds the pieces
-/// [piece_begin[b], piece_begin[b+1]), sorted by voxel, and the vertices [vertex_begin[b], vertex_begin[b+1]). What is equal is
-/// in model order.
+/// [piece_begin[b], piece_begin[b+1]), sorted by voxel, and the vertices [vertex_begin[b], vertex_begin[b+1]). What is
+/// equal is in model order.
 struct SortedStrands {
     std::vector<std::uint32_t> bricks;        ///< [B] linear index of GridFrame
     std::vector<std::int32_t> slot_of_brick;  ///< [frame.brick_count()] index into `bricks`, or -1

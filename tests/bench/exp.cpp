@@ -41,5 +41,10 @@ int main(int argc,char**argv){
   std::vector<float> b; for(auto v:vs) b.push_back(r.average[v]); auto e=error_statistics(b,ref);
   double mean=0; for(float x:ref) mean+=x/ref.size();
   printf("%s h=%.4f bake %.3f s rmse %.4f bias %+.4f (meanA %.3f)\n",name.c_str(),r.voxel_size,el,e.rmse,e.bias,mean);
+ if(rep==0&&getenv("BINS")){ auto d=distance_to_other_strands(g,vs,30); double wh=0; for(auto v:vs) wh+=g.widths[v]/r.voxel_size/vs.size(); printf("mean w/h %.3f\n",wh); 
+  for(int bin=0;bin<8;bin++){ double lo[]={1,1.5,2,3,5,8,12,20,31}; std::vector<float> x,y; double m=0; for(size_t i=0;i<vs.size();i++) if(d[i]>=lo[bin]&&d[i]<lo[bin+1]){x.push_back(b[i]);y.push_back(ref[i]);m+=ref[i];} auto q=error_statistics(x,y); printf(" dist/w %.1f.. n %zu rmse %.4f bias %+.4f meanA %.3f\n",lo[bin],x.size(),q.rmse,q.bias,m/std::max<size_t>(1,x.size())); }
+  for(int bin=0;bin<5;bin++){ std::vector<float> x,y; for(size_t i=0;i<vs.size();i++) if(ref[i]>=bin*.2&&ref[i]<=bin*.2+.2){x.push_back(b[i]);y.push_back(ref[i]);} auto q=error_statistics(x,y); printf(" A %.1f.. n %zu rmse %.4f bias %+.4f\n",bin*.2,x.size(),q.rmse,q.bias); }
+  for(int bin=0;bin<4;bin++){ std::vector<float> x,y; for(size_t i=0;i<vs.size();i++){ auto it=std::upper_bound(g.strand_begin.begin(),g.strand_begin.end(),vs[i]); size_t st=it-g.strand_begin.begin()-1; double q=(vs[i]-g.strand_begin[st])/double(g.strand_begin[st+1]-1-g.strand_begin[st]); if(q>=bin*.25&&q<=bin*.25+.25){x.push_back(b[i]);y.push_back(ref[i]);}} auto q=error_statistics(x,y); printf(" along %.2f.. n %zu rmse %.4f bias %+.4f\n",bin*.25,x.size(),q.rmse,q.bias); }
+ }
 }
 }
