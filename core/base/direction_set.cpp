@@ -18,6 +18,7 @@ Vec3d from_y_and_azimuth(double y, double phi) {
 
 std::vector<Vec3d> fibonacci(int count) {
     std::vector<Vec3d> directions;
+    directions.reserve(static_cast<std::size_t>(count));
     const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
     for (int k = 0; k < count; ++k)
         directions.push_back(from_y_and_azimuth(1 - (2 * k + 1) / double(count), k * golden_angle));
@@ -55,9 +56,12 @@ std::vector<Vec3d> independent(int count, std::uint64_t seed) {
 
 std::string_view name_of(DirectionSet set) {
     switch (set) {
-        case DirectionSet::fibonacci: return "fibonacci";
-        case DirectionSet::stratified: return "stratified";
-        case DirectionSet::random: return "random";
+        case DirectionSet::fibonacci:
+            return "fibonacci";
+        case DirectionSet::stratified:
+            return "stratified";
+        case DirectionSet::random:
+            return "random";
     }
     return "unknown";
 }
@@ -68,9 +72,12 @@ std::vector<Vec3d> make_directions(DirectionSet set, int count, std::uint64_t se
                     "transmittance.directions is " + std::to_string(count) + "; allowed are 1 to 4096",
                     "transmittance.directions");
     switch (set) {
-        case DirectionSet::fibonacci: return fibonacci(count);
-        case DirectionSet::stratified: return stratified(count, seed);
-        case DirectionSet::random: return independent(count, seed);
+        case DirectionSet::fibonacci:
+            return fibonacci(count);
+        case DirectionSet::stratified:
+            return stratified(count, seed);
+        case DirectionSet::random:
+            return independent(count, seed);
     }
     throw Error(ErrorKind::internal, "unknown direction set");
 }
