@@ -51,8 +51,7 @@ std::string Digest::hex() {
 
 std::string digest_of_file(const std::filesystem::path& file) {
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), std::fclose);
-    if (!stream)
-        throw Error(ErrorKind::bad_input, file.string() + ": " + std::generic_category().message(errno));
+    if (!stream) throw Error(ErrorKind::bad_input, file.string() + ": " + std::generic_category().message(errno));
     Digest digest;
     std::vector<std::byte> buffer(1 << 20);
     while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), stream.get()))

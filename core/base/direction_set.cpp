@@ -55,9 +55,12 @@ std::vector<Vec3d> independent(int count, std::uint64_t seed) {
 
 std::string_view name_of(DirectionSet set) {
     switch (set) {
-        case DirectionSet::fibonacci: return "fibonacci";
-        case DirectionSet::stratified: return "stratified";
-        case DirectionSet::random: return "random";
+        case DirectionSet::fibonacci:
+            return "fibonacci";
+        case DirectionSet::stratified:
+            return "stratified";
+        case DirectionSet::random:
+            return "random";
     }
     return "unknown";
 }
@@ -68,9 +71,12 @@ std::vector<Vec3d> make_directions(DirectionSet set, int count, std::uint64_t se
                     "transmittance.directions is " + std::to_string(count) + "; allowed are 1 to 4096",
                     "transmittance.directions");
     switch (set) {
-        case DirectionSet::fibonacci: return fibonacci(count);
-        case DirectionSet::stratified: return stratified(count, seed);
-        case DirectionSet::random: return independent(count, seed);
+        case DirectionSet::fibonacci:
+            return fibonacci(count);
+        case DirectionSet::stratified:
+            return stratified(count, seed);
+        case DirectionSet::random:
+            return independent(count, seed);
     }
     throw Error(ErrorKind::internal, "unknown direction set");
 }

@@ -12,8 +12,8 @@ namespace hairbake {
 
 /// Reads a .hair file: every combination of the array bits but the points array, which the format demands. Counts are
 /// checked against the file's size before memory is taken. Throws Error(bad_input) naming file, strand and
-/// vertex, what was found and what is allowed: a bad magic, counts that disagree, a truncated or over-long file, NaN, infinity or
-/// coordinates beyond 1e18 in magnitude.
+/// vertex, what was found and what is allowed: a bad magic, counts that disagree, a truncated or over-long file, NaN,
+/// infinity or coordinates beyond 1e18 in magnitude.
 HairModel read_hair(const std::filesystem::path& file);
 
 /// The same from memory; `name` stands for the file in messages. This is what the fuzzer calls.

@@ -11,9 +11,9 @@
 namespace hairbake {
 
 /// Strands in file order. V = positions.size() points, S = strand_begin.size() - 1 strands; strand s owns the points
-/// [strand_begin[s], strand_begin[s+1]), root first, at least one point each. An optional array is empty when the file has none, and
-/// then the default of the header holds for every point. Everything is kept that a writer needs to give the file
-/// back unchanged. Positions are finite and in the model's own unit, right-handed, Y up.
+/// [strand_begin[s], strand_begin[s+1]), root first, at least one point each. An optional array is empty when the file
+/// has none, and then the default of the header holds for every point. Everything is kept that a writer needs to give
+/// the file back unchanged. Positions are finite and in the model's own unit, right-handed, Y up.
 struct HairModel {
     std::vector<std::uint32_t> strand_begin;  ///< [S + 1]
     std::vector<Vec3f> positions;             ///< [V]
