@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <iosfwd>
 #include <span>
 #include <string>
 
@@ -13,16 +14,22 @@ namespace hairbake {
 /// Reads a .hair file: every combination of the array bits but the points array, which the format demands. Counts are
 /// checked against the file's size before memory is taken. Throws Error(bad_input) naming file, strand and
 /// vertex, what was found and what is allowed: a bad magic, counts that disagree, a truncated or over-long file, NaN,
-/// infinity or coordinates beyond 1e18 in magnitude.
+/// infinity or coordinates beyond 1e18 in magnitude; Error(out_of_resources) when memory ends. Reentrant.
 HairModel read_hair(const std::filesystem::path& file);
 
 /// The same from memory; `name` stands for the file in messages. This is what the fuzzer calls.
 HairModel read_hair(std::span<const std::byte> bytes, const std::string& name);
 
 /// Writes the model; reading the result gives the same model, and a model that was read unchanged gives the same bytes.
+/// Throws Error(out_of_resources) naming the file when it cannot be written whole, and Error(internal) for a model
+/// whose arrays contradict each other or whose strands the format cannot hold (65,536 points each at most).
 void write_hair(const HairModel& model, const std::filesystem::path& file);
 
+/// The same to a stream, whose state tells whether all was written.
+void write_hair(const HairModel& model, std::ostream& stream);
+
 /// A copy of `model` whose colours are grey with the value of `transmittance` ([V], 0 to 1) and nothing else changed.
+/// Throws Error(internal) when the sizes differ.
 HairModel with_transmittance_as_colors(const HairModel& model, std::span<const float> transmittance);
 
 }  // namespace hairbake

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/base/vec.h"
@@ -26,11 +27,15 @@ struct HairModel {
     float default_thickness = 0;
     float default_transparency = 0;
     Vec3f default_color{1, 1, 1};
-    std::array<char, 88> info{};  ///< the header's free text, as in the file
+    std::array<char, 88> info{};     ///< the header's free text, as in the file
+    std::uint32_t empty_arrays = 0;  ///< V = 0 only: array bits of the file, whose arrays then have no entries
 
     std::size_t strand_count() const { return strand_begin.empty() ? 0 : strand_begin.size() - 1; }
     std::size_t vertex_count() const { return positions.size(); }
 };
+
+/// "strand 12, vertex 3" for point `i` of the model, both counted from 0, the vertex within its strand.
+std::string place_of_point(const HairModel& model, std::size_t i);
 
 /// The request's `strand` block: how the model's widths and opacities are read.
 struct StrandSettings {

@@ -9,13 +9,6 @@
 namespace hairbake {
 namespace {
 
-/// "strand 12, vertex 3" of point `i`, both counted from 0, the vertex within its strand.
-std::string place(const HairModel& model, std::size_t i) {
-    const auto& begin = model.strand_begin;
-    const auto strand = std::upper_bound(begin.begin(), begin.end(), i) - begin.begin() - 1;
-    return "strand " + std::to_string(strand) + ", vertex " + std::to_string(i - begin[strand]);
-}
-
 std::vector<float> resolve_widths(const HairModel& model, const StrandSettings& settings) {
     std::vector<float> widths(model.vertex_count());
     for (std::size_t i = 0; i < widths.size(); ++i) {
@@ -24,7 +17,7 @@ std::vector<float> resolve_widths(const HairModel& model, const StrandSettings& 
         widths[i] = static_cast<float>(width);
         if (!(widths[i] > 0) || !std::isfinite(widths[i]))
             throw Error(ErrorKind::bad_input,
-                        "the strand width at " + place(model, i) + " is " + std::to_string(width) +
+                        "the strand width at " + place_of_point(model, i) + " is " + std::to_string(width) +
                             "; it must be positive and finite: give strand.width (--width), the strand's diameter in "
                             "the model's unit",
                         "strand.width");
@@ -39,7 +32,7 @@ std::vector<float> resolve_opacities(const HairModel& model, const StrandSetting
         opacities[i] = 1 - (model.transparency.empty() ? model.default_transparency : model.transparency[i]);
         if (!(opacities[i] >= 0 && opacities[i] <= 1))
             throw Error(ErrorKind::bad_input,
-                        "the transparency at " + place(model, i) + " is " + std::to_string(1 - opacities[i]) +
+                        "the transparency at " + place_of_point(model, i) + " is " + std::to_string(1 - opacities[i]) +
                             "; allowed is 0 to 1 when strand.opacity is from_file",
                         "strand.opacity");
     }
@@ -59,15 +52,15 @@ void find_bounds(StrandGeometry& geometry) {
 
 void find_degenerate_segments(StrandGeometry& geometry) {
     const Vec3f side = geometry.bounds_max - geometry.bounds_min;
-    const float shortest = 1e-6f * std::max({side.x, side.y, side.z});
-    geometry.segments.assign(geometry.vertex_count(), Segment::none);
+    const double shortest = 1e-6 * std::max({side.x, side.y, side.z});
+    geometry.segment_ok.assign(geometry.vertex_count(), 0);
     for (std::size_t s = 0; s < geometry.strand_count(); ++s)
         for (std::uint32_t i = geometry.strand_begin[s]; i + 1 < geometry.strand_begin[s + 1]; ++i) {
-            const float segment_length = length(geometry.positions[i + 1] - geometry.positions[i]);
-            const bool solid = segment_length > 0 && segment_length >= shortest;
-            geometry.segments[i] = solid ? Segment::solid : Segment::degenerate;
+            const double segment_length = length(Vec3d(geometry.positions[i + 1]) - Vec3d(geometry.positions[i]));
+            const bool ok = segment_length > 0 && segment_length >= shortest;
+            geometry.segment_ok[i] = ok;
             ++geometry.segment_count;
-            geometry.degenerate_segment_count += !solid;
+            geometry.degenerate_segment_count += !ok;
         }
 }
 
@@ -78,6 +71,7 @@ StrandGeometry make_strand_geometry(const HairModel& model, const StrandSettings
     geometry.widths = resolve_widths(model, settings);
     geometry.opacities = resolve_opacities(model, settings);
     geometry.strand_begin = model.strand_begin;
+    if (geometry.strand_begin.empty()) geometry.strand_begin.push_back(0);
     geometry.positions = model.positions;
     find_bounds(geometry);
     find_degenerate_segments(geometry);

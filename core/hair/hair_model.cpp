@@ -1,0 +1,13 @@
+#include "core/hair/hair_model.h"
+
+#include <algorithm>
+
+namespace hairbake {
+
+std::string place_of_point(const HairModel& model, std::size_t i) {
+    const auto& begin = model.strand_begin;
+    const auto strand = std::upper_bound(begin.begin(), begin.end(), i) - begin.begin() - 1;
+    return "strand " + std::to_string(strand) + ", vertex " + std::to_string(i - begin[strand]);
+}
+
+}  // namespace hairbake
