@@ -31,12 +31,18 @@ CubePoint cube_point(const Vec3d& d) {
 Vec3d cube_direction(const CubePoint& point) {
     const double a = point.a, b = point.b;
     switch (point.face) {
-        case 0: return {1, -b, -a};
-        case 1: return {-1, -b, a};
-        case 2: return {a, 1, b};
-        case 3: return {a, -1, -b};
-        case 4: return {a, -b, 1};
-        default: return {-a, -b, -1};
+        case 0:
+            return {1, -b, -a};
+        case 1:
+            return {-1, -b, a};
+        case 2:
+            return {a, 1, b};
+        case 3:
+            return {a, -1, -b};
+        case 4:
+            return {a, -b, 1};
+        default:
+            return {-a, -b, -1};
     }
 }
 

@@ -15,11 +15,11 @@ namespace hairbake {
 
 /// What the manifest says about a file of the result.
 struct WrittenFile {
-    std::string name;                 ///< within the result folder
+    std::string name;  ///< within the result folder
     std::string sha256;
     std::uint64_t bytes = 0;
-    std::vector<std::size_t> shape;   ///< of arrays and images, rows first; else empty
-    std::string content;              ///< one line for people
+    std::vector<std::size_t> shape;  ///< of arrays and images, rows first; else empty
+    std::string content;             ///< one line for people
 };
 
 /// Writes one new file. Not thread-safe. A full disk, a quota or a size limit is Error(out_of_resources); any other

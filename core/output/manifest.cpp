@@ -28,9 +28,12 @@ Json triple(const Vec3<T>& v) {
 
 const char* name_of(LatLong convention) {
     switch (convention) {
-        case LatLong::gltf: return "gltf";
-        case LatLong::filament: return "filament";
-        default: return "openexr";
+        case LatLong::gltf:
+            return "gltf";
+        case LatLong::filament:
+            return "filament";
+        default:
+            return "openexr";
     }
 }
 
@@ -200,7 +203,8 @@ std::vector<std::string> files_of_result(const std::filesystem::path& folder) {
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     try {
         const Json manifest = Json::parse(text);
-        if (manifest.at("format") != format_name) throw Error(ErrorKind::bad_input, file.string() + " is not of hairbake");
+        if (manifest.at("format") != format_name)
+            throw Error(ErrorKind::bad_input, file.string() + " is not of hairbake");
         std::vector<std::string> names;
         for (const Json& entry : manifest.at("files")) names.push_back(entry.at("name").get<std::string>());
         return names;

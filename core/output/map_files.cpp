@@ -98,12 +98,16 @@ std::vector<WrittenFile> write_map_exr(const IrradianceMaps& maps, const std::fi
 
 WrittenFile write_environment_sh(const IrradianceMaps& maps, const std::filesystem::path& folder) {
     FileSink sink(folder / "environment_sh.json");
-    sink.write("{\n  \"content\": \"real orthonormal spherical harmonics of the environment's radiance, RGB\",\n"
-               "  \"order\": \"index l*l + l + m, z polar, no Condon-Shortley phase, hairbake's frame\",\n"
-               "  \"bands\": " + std::to_string(maps.environment_sh_bands) + ",\n  \"coefficients\": [");
+    sink.write(
+        "{\n  \"content\": \"real orthonormal spherical harmonics of the environment's radiance, RGB\",\n"
+        "  \"order\": \"index l*l + l + m, z polar, no Condon-Shortley phase, hairbake's frame\",\n"
+        "  \"bands\": " +
+        std::to_string(maps.environment_sh_bands) + ",\n  \"coefficients\": [");
     const char* separator = "\n    ";
     for (const Vec3d& c : maps.environment_sh) {
-        sink.write(separator + ("[" + text(c.x)) + ", " + text(c.y) + ", " + text(c.z) + "]");
+        char entry[128];
+        std::snprintf(entry, sizeof entry, "%s[%.17g, %.17g, %.17g]", separator, c.x, c.y, c.z);
+        sink.write(std::string_view(entry));
         separator = ",\n    ";
     }
     sink.write("\n  ]\n}\n");

@@ -18,14 +18,15 @@ static_assert(sizeof(Vec3f) == 3 * sizeof(float));
 constexpr std::string_view magic{"\x93NUMPY\x01\x00", 8};
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& what) {
-    throw Error(ErrorKind::bad_input, file.string() + " " + what +
-                                          "; allowed is what hairbake writes: .npy version 1.0, '<f4', C order");
+    throw Error(ErrorKind::bad_input,
+                file.string() + " " + what + "; allowed is what hairbake writes: .npy version 1.0, '<f4', C order");
 }
 
 /// The header's dictionary; the stream is left at the data.
 std::string read_dictionary(std::ifstream& stream, const std::filesystem::path& file) {
     char start[10];
-    if (!stream.read(start, sizeof start) || std::string_view(start, 8) != magic) refuse(file, "is not .npy version 1.0");
+    if (!stream.read(start, sizeof start) || std::string_view(start, 8) != magic)
+        refuse(file, "is not .npy version 1.0");
     const std::size_t length = static_cast<unsigned char>(start[8]) + 256u * static_cast<unsigned char>(start[9]);
     std::string dictionary(length, ' ');
     if (!stream.read(dictionary.data(), static_cast<std::streamsize>(length))) refuse(file, "ends within its header");

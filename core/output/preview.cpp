@@ -151,14 +151,13 @@ void draw_diffuse(Sheet& sheet, const BakeResult& result, int top) {
     const Vec3d& mean = maps.diffuse_statistics.mean;
     const EnvironmentMap& map = *result.environment;
     const bool exact = result.request.irradiance.method == IrradianceMethod::exact;
-    const std::string lines[] = {
-        format("shown at %+.2f stops; lat-long, centre +X, right of it +Z, top +Y", stops),
-        format("mean irradiance  %.4g  %.4g  %.4g", mean.x, mean.y, mean.z),
-        format("environment %d x %d, %s", map.width, map.height, map.source_format.c_str()),
-        exact ? "exact sum over the environment's pixels"
-              : format("spherical harmonics, %d bands diffuse, %d specular", maps.sh_bands_diffuse,
-                       maps.sh_bands_specular),
-        format("cube faces of %d x %d texels", maps.face_size, maps.face_size)};
+    const std::string lines[] = {format("shown at %+.2f stops; lat-long, centre +X, right of it +Z, top +Y", stops),
+                                 format("mean irradiance  %.4g  %.4g  %.4g", mean.x, mean.y, mean.z),
+                                 format("environment %d x %d, %s", map.width, map.height, map.source_format.c_str()),
+                                 exact ? "exact sum over the environment's pixels"
+                                       : format("spherical harmonics, %d bands diffuse, %d specular",
+                                                maps.sh_bands_diffuse, maps.sh_bands_specular),
+                                 format("cube faces of %d x %d texels", maps.face_size, maps.face_size)};
     int y = top + 54;
     for (const std::string& words : lines) {
         sheet.text(left, y, words, 15, dim);
@@ -225,7 +224,8 @@ WrittenFile write_preview(const BakeResult& result, const std::filesystem::path&
     FileSink sink(folder / "preview.png");
     sink.write(encode_png(sheet.canvas.rgb(), sheet.canvas.width(), sheet.canvas.height(), {}));
     WrittenFile written = sink.finish();
-    written.shape = {static_cast<std::size_t>(sheet.canvas.height()), static_cast<std::size_t>(sheet.canvas.width()), 3};
+    written.shape = {static_cast<std::size_t>(sheet.canvas.height()), static_cast<std::size_t>(sheet.canvas.width()),
+                     3};
     written.content = "contact sheet";
     return written;
 }

@@ -24,10 +24,10 @@ fs::path resolved(const fs::path& folder) {
 }
 
 [[noreturn]] void refuse(const fs::path& folder, const std::string& why) {
-    throw Error(ErrorKind::usage,
-                folder.string() + " " + why +
-                    "; results go to a new or empty folder, or replace an earlier result of hairbake",
-                "out");
+    throw Error(
+        ErrorKind::usage,
+        folder.string() + " " + why + "; results go to a new or empty folder, or replace an earlier result of hairbake",
+        "out");
 }
 
 void sync_folder(const fs::path& folder) {
@@ -70,7 +70,9 @@ void check_result_folder(const fs::path& folder) {
 
 fs::path staging_folder(const fs::path& folder) {
     const fs::path path = resolved(folder);
-    return path.parent_path() / ("." + path.filename().string() + ".hairbake-" + std::to_string(::getpid()));
+    std::string name = ".";
+    name.append(path.filename().string()).append(".hairbake-").append(std::to_string(::getpid()));
+    return path.parent_path() / name;
 }
 
 void discard_staging(const fs::path& folder) noexcept {
