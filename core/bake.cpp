@@ -11,6 +11,9 @@
 #include "core/environment/environment_reader.h"
 #include "core/hair/hair_file.h"
 #include "core/hair/strand_geometry.h"
+#include "core/output/manifest.h"
+#include "core/output/result_files.h"
+#include "core/output/result_folder.h"
 #include "core/reference/tracer.h"
 #include "core/request_keys.h"
 
@@ -134,6 +137,18 @@ BakeResult bake(const BakeRequest& request, int threads, Progress& progress) {
     return result;
 }
 
-void write_result(BakeResult& result, const std::filesystem::path& folder, Progress& progress);
+void write_result(BakeResult& result, const std::filesystem::path& folder, Progress& progress) {
+    std::optional<ResultFolder> target;
+    std::vector<WrittenFile> files;
+    run_stage(result, progress, "write", [&] {
+        target.emplace(folder);
+        files = write_files(result, target->path(), progress);
+    });
+    result.measured.peak_memory_bytes = peak_memory();
+    // The manifest is the last file, as it names all others; its own writing is in no timing.
+    write_manifest(result, files, target->path());
+    progress.check();
+    target->commit();
+}
 
 }  // namespace hairbake

@@ -2,10 +2,11 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 
 #include "core/bake_result.h"
 #include "core/base/progress.h"
+#include "core/output/result_folder.h"
+#include "core/output/versions.h"
 
 namespace hairbake {
 
@@ -18,15 +19,5 @@ BakeResult bake(const BakeRequest& request, int threads, Progress& progress);
 /// than an earlier result's, Error(bad_input) when the place cannot be written, Error(out_of_resources) when the
 /// disk is full, Error(cancelled).
 void write_result(BakeResult& result, const std::filesystem::path& folder, Progress& progress);
-
-/// The check of `folder` that write_result makes, to be had before a long bake.
-void check_result_folder(const std::filesystem::path& folder);
-
-/// Removes what write_result of this process has written so far for `folder`, for a process that is about to end; may
-/// be called from another thread.
-void discard_staging(const std::filesystem::path& folder) noexcept;
-
-/// hairbake's own version, "0.1.0".
-std::string version();
 
 }  // namespace hairbake

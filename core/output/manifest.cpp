@@ -196,6 +196,13 @@ std::string make_manifest(const BakeResult& result, const std::vector<WrittenFil
     return manifest.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+void write_manifest(const BakeResult& result, const std::vector<WrittenFile>& files,
+                    const std::filesystem::path& folder) {
+    FileSink sink(folder / "manifest.json");
+    sink.write(make_manifest(result, files));
+    sink.finish();
+}
+
 std::vector<std::string> files_of_result(const std::filesystem::path& folder) {
     const std::filesystem::path file = folder / "manifest.json";
     std::ifstream stream(file, std::ios::binary);

@@ -14,6 +14,10 @@ namespace hairbake {
 /// request; everything else is the same bit for bit.
 std::string make_manifest(const BakeResult& result, const std::vector<WrittenFile>& files);
 
+/// Writes it to `folder`/manifest.json.
+void write_manifest(const BakeResult& result, const std::vector<WrittenFile>& files,
+                    const std::filesystem::path& folder);
+
 /// Names of the files that the manifest.json in `folder` lists. Throws Error(bad_input) when there is none of
 /// hairbake's.
 std::vector<std::string> files_of_result(const std::filesystem::path& folder);

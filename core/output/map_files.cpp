@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "core/output/cube_image.h"
+#include "core/output/latlong_picture.h"
 #include "core/output/image_file.h"
 #include "core/output/npy.h"
 

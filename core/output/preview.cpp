@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "core/output/canvas.h"
-#include "core/output/cube_image.h"
+#include "core/output/latlong_picture.h"
 #include "core/output/hair_picture.h"
 #include "core/output/image_file.h"
 #include "core/output/map_files.h"
