@@ -88,8 +88,8 @@ void transmittance_stage(BakeResult& result, Progress& progress) {
     if (settings.reference_vertices == 0) return;
     run_stage(result, progress, "reference", [&] {
         if (!scene) scene.emplace(strands, progress);
-        result.error_bar = measure_error(*scene, result.transmittance->average, settings.reference_vertices,
-                                         settings.seed, progress);
+        result.error_bar =
+            measure_error(*scene, result.transmittance->average, settings.reference_vertices, settings.seed, progress);
     });
 }
 
@@ -104,9 +104,8 @@ void read_environment_stage(BakeResult& result, Progress& progress) {
 }
 
 void irradiance_stage(BakeResult& result, Progress& progress) {
-    run_stage(result, progress, "irradiance", [&] {
-        result.irradiance = bake_irradiance(*result.environment, result.request.irradiance, progress);
-    });
+    run_stage(result, progress, "irradiance",
+              [&] { result.irradiance = bake_irradiance(*result.environment, result.request.irradiance, progress); });
     result.environment->pixels = {};
     add_warnings(result, result.irradiance->warnings);
 }

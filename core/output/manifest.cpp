@@ -26,17 +26,6 @@ Json triple(const Vec3<T>& v) {
     return {v.x, v.y, v.z};
 }
 
-const char* name_of(LatLong convention) {
-    switch (convention) {
-        case LatLong::gltf:
-            return "gltf";
-        case LatLong::filament:
-            return "filament";
-        default:
-            return "openexr";
-    }
-}
-
 Json stages(const BakeResult& result) {
     Json block = Json::object();
     if (result.transmittance)
@@ -61,7 +50,7 @@ Json environment_input(const BakeResult& result) {
             {"height", map.height},
             {"format", map.source_format},
             {"layout", map.layout},
-            {"latlong", name_of(map.latlong)},
+            {"latlong", std::string(name_of(map.latlong))},
             {"primaries", map.primaries},
             {"low_dynamic_range", map.low_dynamic_range},
             {"energy", map.repairs.energy_total}};

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "core/output/latlong_picture.h"
 #include "core/output/image_file.h"
+#include "core/output/latlong_picture.h"
 #include "core/output/npy.h"
 
 namespace hairbake {

@@ -5,9 +5,9 @@
 #include <cstdio>
 
 #include "core/output/canvas.h"
-#include "core/output/latlong_picture.h"
 #include "core/output/hair_picture.h"
 #include "core/output/image_file.h"
+#include "core/output/latlong_picture.h"
 #include "core/output/map_files.h"
 #include "core/output/tone.h"
 #include "core/output/versions.h"
