@@ -51,10 +51,11 @@ std::string shape_text(const std::vector<std::size_t>& shape) {
 
 void compare_file(const fs::path& first, const fs::path& second, const std::string& name, Json& report) {
     const NpyArray a = read_npy(first / (name + ".npy")), b = read_npy(second / (name + ".npy"));
-    if (a.shape != b.shape)
-        throw Error(ErrorKind::bad_input, name + ".npy has the shape " + shape_text(a.shape) + " in " + first.string() +
-                                              " and " + shape_text(b.shape) + " in " + second.string() +
-                                              "; only equal shapes can be compared");
+    if (a.shape != b.shape) {
+        report[name] = "shapes " + shape_text(a.shape) + " and " + shape_text(b.shape) + " cannot be compared";
+        report["same"] = false;
+        return;
+    }
     report["same"] = report["same"].get<bool>() && a.values == b.values;
     if (name != "specular") {
         report[name] = statistics(a.values, b.values);
@@ -74,7 +75,7 @@ void compare_file(const fs::path& first, const fs::path& second, const std::stri
 std::string compare(const fs::path& first, const fs::path& second) {
     const std::vector<std::string> in_first = files_of_result(first), in_second = files_of_result(second);
     Json report{{"first", first.string()}, {"second", second.string()}, {"same", true}};
-    bool any = false;
+    bool any = false;  // file in common
     for (const std::string name : {"transmittance", "diffuse", "specular"}) {
         const bool a = has(in_first, name + ".npy"), b = has(in_second, name + ".npy");
         if (a != b) {
@@ -89,6 +90,29 @@ std::string compare(const fs::path& first, const fs::path& second) {
         throw Error(ErrorKind::bad_input, first.string() + " and " + second.string() +
                                               " have no .npy file in common; bake both with the output npy");
     return report.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string as_table(const std::string& report) {
+    const Json object = Json::parse(report);
+    std::string table = object["first"].get<std::string>() + " and " + object["second"].get<std::string>() +
+                        (object["same"].get<bool>() ? ": all values are equal\n" : ": second minus first\n");
+    char line[160];
+    std::snprintf(line, sizeof line, "%-16s %10s %12s %12s %13s %12s\n", "", "values", "max abs", "rms", "bias",
+                  "rms/largest");
+    table += line;
+    const auto number = [](const Json& value) { return value.is_null() ? std::nan("") : value.get<double>(); };
+    for (const auto& [name, item] : object.items()) {
+        if (item.is_object())
+            std::snprintf(line, sizeof line, "%-16s %10zu %12.4e %12.4e %+13.4e %12.4e\n", name.c_str(),
+                          item["values"].get<std::size_t>(), number(item["max_abs"]), number(item["rms"]),
+                          number(item["bias"]), number(item["rms_over_largest"]));
+        else if (item.is_string() && name != "first" && name != "second")
+            std::snprintf(line, sizeof line, "%-16s %s\n", name.c_str(), item.get_ref<const std::string&>().c_str());
+        else
+            continue;
+        table += line;
+    }
+    return table;
 }
 
 }  // namespace hairbake

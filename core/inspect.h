@@ -13,7 +13,7 @@ namespace hairbake {
 /// shows from what it holds, not from its name. Throws Error(bad_input), Error(cancelled).
 std::string inspect(const std::filesystem::path& path, Progress& progress);
 
-/// A JSON object of inspect() or compare() as aligned lines for people: names on the left, values on the right.
+/// The JSON object of inspect() as aligned lines for people: names on the left, values on the right.
 std::string as_lines(const std::string& json_object);
 
 }  // namespace hairbake

@@ -4,7 +4,6 @@
 #include "clients/cli/commands.h"
 #include "clients/cli/signal_watch.h"
 #include "core/compare.h"
-#include "core/inspect.h"
 
 namespace hairbake {
 
@@ -23,7 +22,7 @@ void add_compare_command(CLI::App& app, Action& action) {
             Progress progress;
             const SignalWatch watch(progress, [] {});
             const std::string report = compare(options->first, options->second);
-            std::fputs(options->json ? (report + "\n").c_str() : as_lines(report).c_str(), stdout);
+            std::fputs(options->json ? (report + "\n").c_str() : as_table(report).c_str(), stdout);
         };
     });
 }

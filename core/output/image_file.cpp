@@ -28,6 +28,7 @@ std::vector<std::byte> encode(const char* format, OIIO::ImageSpec spec, OIIO::Ty
 std::vector<std::byte> encode_exr(const std::vector<Vec3f>& pixels, int width, int height, const Metadata& metadata) {
     OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::FLOAT);
     spec.attribute("compression", "zip");
+    spec.attribute("DateTime", "");  // or OpenImageIO writes the time of day
     spec.attribute("oiio:ColorSpace", "Linear");
     return encode("exr", spec, OIIO::TypeDesc::FLOAT, pixels.data(), metadata);
 }

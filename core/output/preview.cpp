@@ -18,7 +18,7 @@ namespace {
 constexpr Color background{22, 24, 28}, panel{32, 35, 41}, line{62, 67, 76}, dim{150, 157, 168}, bright{232, 235, 240},
     accent{236, 167, 84};
 constexpr int margin = 32, sheet_width = 1600, inner_width = sheet_width - 2 * margin;
-constexpr int header_height = 104, transmittance_height = 520, diffuse_height = 420;
+constexpr int header_height = 104, transmittance_height = 520, diffuse_height = 364;
 constexpr int columns = 6, gap = 16, tile_width = (inner_width - (columns - 1) * gap) / columns;
 constexpr int tile_height = tile_width / 2, tile_step = tile_height + 40;
 constexpr std::size_t most_tiles = 36;
@@ -53,7 +53,7 @@ void draw_groom(Sheet& sheet, const BakeResult& result, View view, int left, int
             for (const int i : {0, 1, 2, 3}) {
                 const std::size_t pixel = static_cast<std::size_t>(2 * y + i / 2) * picture.size + 2 * x + i % 2;
                 const float a = picture.value[pixel];
-                const auto grey = static_cast<int>(std::lround(24 + 231 * std::sqrt(std::clamp(a, 0.f, 1.f))));
+                const auto grey = static_cast<int>(std::lround(20 + 235 * std::pow(std::clamp(a, 0.f, 1.f), 0.75f)));
                 for (int c = 0; c < 3; ++c) sum[c] += a < 0 ? empty[c] : grey - 14 * c;
             }
             sheet.canvas.set(left + x, top + y,
@@ -140,24 +140,41 @@ double exposure_of(std::span<const CubeTexels> maps) {
     return exposure_for(std::move(values));
 }
 
+/// The six faces unfolded around +Z as they are stored, each with its name.
+void draw_net(Sheet& sheet, const CubeTexels& cube, int face_size, double stops, int left, int top, int size) {
+    constexpr std::array<std::array<int, 2>, cube_faces> place{{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}}};
+    for (int face = 0; face < cube_faces; ++face) {
+        const int x0 = left + place[face][0] * size, y0 = top + place[face][1] * size;
+        for (int y = 0; y < size - 2; ++y)
+            for (int x = 0; x < size - 2; ++x) {
+                const Vec3d direction =
+                    cube_direction({face, 2 * (x + 0.5) / (size - 2) - 1, 2 * (y + 0.5) / (size - 2) - 1});
+                sheet.canvas.set(x0 + x, y0 + y, tone(Vec3f(sample_cube(cube, face_size, direction)), stops));
+            }
+        sheet.text(x0 + 8, y0 + 20, std::string(cube_face_name(face)), 13, background);
+    }
+}
+
 void draw_diffuse(Sheet& sheet, const BakeResult& result, int top) {
     const IrradianceMaps& maps = *result.irradiance;
     const double stops = exposure_of({&maps.diffuse, 1});
-    constexpr int width = 760;
+    constexpr int width = 640, net_face = 108, net_left = margin + width + 24;
     draw_map(sheet, maps.diffuse, maps.face_size, stops, margin, top, width);
+    draw_net(sheet, maps.diffuse, maps.face_size, stops, net_left, top, net_face);
 
-    const int left = margin + width + 32;
+    constexpr int left = net_left + 4 * net_face + 24;
     sheet.text(left, top + 22, "diffuse", 22, bright, Canvas::Align::left, true);
     const Vec3d& mean = maps.diffuse_statistics.mean;
     const EnvironmentMap& map = *result.environment;
     const bool exact = result.request.irradiance.method == IrradianceMethod::exact;
-    const std::string lines[] = {format("shown at %+.2f stops; lat-long, centre +X, right of it +Z, top +Y", stops),
-                                 format("mean irradiance  %.4g  %.4g  %.4g", mean.x, mean.y, mean.z),
-                                 format("environment %d x %d, %s", map.width, map.height, map.source_format.c_str()),
-                                 exact ? "exact sum over the environment's pixels"
-                                       : format("spherical harmonics, %d bands diffuse, %d specular",
-                                                maps.sh_bands_diffuse, maps.sh_bands_specular),
-                                 format("cube faces of %d x %d texels", maps.face_size, maps.face_size)};
+    const std::string lines[] = {
+        format("shown at %+.2f stops", stops),
+        "lat-long: centre +X, right of it +Z, top +Y",
+        format("mean irradiance %.4g %.4g %.4g", mean.x, mean.y, mean.z),
+        format("cube faces of %d x %d texels", maps.face_size, maps.face_size),
+        exact ? "exact sum over the environment's pixels"
+              : format("SH with %d bands diffuse, %d specular", maps.sh_bands_diffuse, maps.sh_bands_specular),
+        format("environment %d x %d, %s", map.width, map.height, map.source_format.c_str())};
     int y = top + 54;
     for (const std::string& words : lines) {
         sheet.text(left, y, words, 15, dim);
@@ -186,7 +203,8 @@ void draw_specular(Sheet& sheet, const IrradianceMaps& maps, int top) {
         const int tile_top = top + 44 + static_cast<int>(i / columns) * tile_step;
         draw_map(sheet, maps.specular[shown[i]], maps.face_size, stops, left, tile_top, tile_width);
         sheet.text(left, tile_top + tile_height + 18,
-                   format("specular m=%zu  θ'=%.4g°", shown[i], theta_prime_degrees(maps, shown[i])), 13, dim);
+                   format("specular m=%02zu   theta' = %.4g deg", shown[i], theta_prime_degrees(maps, shown[i])), 13,
+                   dim);
     }
 }
 

@@ -20,7 +20,7 @@ double exposure_for(std::vector<float> luminances) {
     if (luminances.empty()) return 0;
     const auto tenth = luminances.end() - 1 - static_cast<std::ptrdiff_t>(luminances.size() / 10);
     std::nth_element(luminances.begin(), tenth, luminances.end());
-    return *tenth > 0 ? std::log2(0.6 / *tenth) : 0;
+    return *tenth > 0 ? std::log2(0.35 / *tenth) : 0;
 }
 
 float luminance(const Vec3f& rgb) { return 0.2126f * rgb.x + 0.7152f * rgb.y + 0.0722f * rgb.z; }
