@@ -18,6 +18,7 @@ Vec3d from_y_and_azimuth(double y, double phi) {
 
 std::vector<Vec3d> fibonacci(int count) {
     std::vector<Vec3d> directions;
+    directions.reserve(static_cast<std::size_t>(count));
     const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
     for (int k = 0; k < count; ++k)
         directions.push_back(from_y_and_azimuth(1 - (2 * k + 1) / double(count), k * golden_angle));

@@ -1,0 +1,117 @@
+#include "core/hair/strand_geometry.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "core/base/error.h"
+#include "core/hair/hair_file.h"
+#include "tests/support/hair_bytes.h"
+
+namespace hairbake {
+namespace {
+
+using namespace hairbake::test_support;
+
+HairModel two_strands() { return read_hair(make_hair_bytes(31, {2, 1}), "two.hair"); }
+
+/// The message and the field with which making the geometry fails as bad input.
+std::pair<std::string, std::string> refusal(const HairModel& model, const StrandSettings& settings) {
+    try {
+        make_strand_geometry(model, settings);
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::bad_input);
+        return {error.what(), error.field()};
+    }
+    return {"was accepted", ""};
+}
+
+TEST(StrandGeometry, TakesWidthsFromTheFile) {
+    const StrandGeometry geometry = make_strand_geometry(two_strands(), {});
+    for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(geometry.widths[i], 0.01f + 0.001f * static_cast<float>(i));
+    HairModel model = two_strands();
+    model.thickness.clear();
+    EXPECT_EQ(make_strand_geometry(model, {}).widths, std::vector<float>(5, 0.02f));  // the header's default
+}
+
+TEST(StrandGeometry, WidthOverridesTheFileAndWidthScaleMultipliesWhicheverHolds) {
+    StrandSettings settings;
+    settings.width = 0.5;
+    EXPECT_EQ(make_strand_geometry(two_strands(), settings).widths, std::vector<float>(5, 0.5f));
+    settings.width_scale = 0.25;
+    EXPECT_EQ(make_strand_geometry(two_strands(), settings).widths, std::vector<float>(5, 0.125f));
+    settings.width.reset();
+    EXPECT_EQ(make_strand_geometry(two_strands(), settings).widths[4], (0.01f + 0.001f * 4) * 0.25f);
+}
+
+TEST(StrandGeometry, AsksForAWidthWhereTheFileGivesNone) {
+    HairModel model = two_strands();
+    model.thickness[4] = 0;
+    const auto [message, field] = refusal(model, {});
+    EXPECT_NE(message.find("strand 1, vertex 1"), std::string::npos) << message;
+    EXPECT_NE(message.find("--width"), std::string::npos) << message;
+    EXPECT_EQ(field, "strand.width");
+    model.thickness.clear();
+    model.default_thickness = 0;
+    EXPECT_NE(refusal(model, {}).first.find("--width"), std::string::npos);
+    StrandSettings settings;
+    settings.width = 0.01;
+    EXPECT_NO_THROW(make_strand_geometry(model, settings));
+}
+
+TEST(StrandGeometry, RefusesWidthsThatAreNotPositiveAndFinite) {
+    for (const double width : {0.0, -1.0, 1e300, 1e-300, std::numeric_limits<double>::quiet_NaN()}) {
+        StrandSettings settings;
+        settings.width = width;
+        EXPECT_EQ(refusal(two_strands(), settings).second, "strand.width") << width;
+    }
+}
+
+TEST(StrandGeometry, TakesOpacityFromTheRequestOrFromTheFile) {
+    StrandSettings settings;
+    settings.opacity = 0.5;
+    EXPECT_EQ(make_strand_geometry(two_strands(), settings).opacities, std::vector<float>(5, 0.5f));
+    settings.opacity_from_file = true;
+    EXPECT_EQ(make_strand_geometry(two_strands(), settings).opacities, std::vector<float>(5, 0.75f));  // 1 - 0.25
+    HairModel model = two_strands();
+    model.transparency.clear();
+    model.default_transparency = 0.125f;
+    EXPECT_EQ(make_strand_geometry(model, settings).opacities, std::vector<float>(5, 0.875f));
+    model.default_transparency = 1.5f;
+    EXPECT_EQ(refusal(model, settings).second, "strand.opacity");
+}
+
+TEST(StrandGeometry, CountsSegmentsAndLeavesTheDegenerateOnesOut) {
+    // The longest side of the bounds is 10, so segments shorter than 1e-6 * 10 = 1e-5 are degenerate. All x are near
+    // enough to 0 that a float holds 0.9e-5 and 1.1e-5 to within 1e-12.
+    HairModel model;
+    model.strand_begin = {0, 4, 5, 7};
+    model.positions = {{0, 0, 0}, {0, 0, 0}, {0.9e-5f, 0, 0}, {2.0e-5f, 0, 0}, {0, 10, 0}, {0, 0, 1}, {0, 0, 2}};
+    model.default_thickness = 0.01f;
+    const StrandGeometry geometry = make_strand_geometry(model, {});
+    EXPECT_EQ(geometry.segment_ok, (std::vector<std::uint8_t>{0, 0, 1, 0, 0, 1, 0}));
+    EXPECT_EQ(geometry.segment_count, 4u);  // 3 + 0 + 1
+    EXPECT_EQ(geometry.degenerate_segment_count, 2u);
+    EXPECT_EQ(geometry.bounds_min, Vec3f(0, 0, 0));
+    EXPECT_EQ(geometry.bounds_max, Vec3f(2.0e-5f, 10, 2));
+}
+
+TEST(StrandGeometry, ModelsOfAnySizeKeepTheirSegments) {
+    for (const float scale : {1e-30f, 1e-10f, 1.0f, 1e17f}) {
+        HairModel model = two_strands();
+        for (Vec3f& p : model.positions) p *= scale;
+        EXPECT_EQ(make_strand_geometry(model, {}).degenerate_segment_count, 0u) << scale;
+    }
+}
+
+TEST(StrandGeometry, HoldsStrandsOfOnePointAndNoStrandsAtAll) {
+    const StrandGeometry points = make_strand_geometry(read_hair(make_hair_bytes(31, {0, 0, 0}), "points.hair"), {});
+    EXPECT_EQ(points.strand_count(), 3u);
+    EXPECT_EQ(points.segment_count, 0u);
+    EXPECT_EQ(points.segment_ok, std::vector<std::uint8_t>(3, 0));
+    EXPECT_EQ(make_strand_geometry(read_hair(make_hair_bytes(31, {}), "empty.hair"), {}).strand_count(), 0u);
+    EXPECT_EQ(make_strand_geometry(HairModel{}, {}).strand_count(), 0u);
+}
+
+}  // namespace
+}  // namespace hairbake

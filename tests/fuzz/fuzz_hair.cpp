@@ -1,0 +1,76 @@
+// Any bytes at all as a HAIR file: refused as bad input, or read, baked into strands and written back unchanged.
+#include <cstdint>
+#include <cstdlib>
+#include <iostream>
+#include <sstream>
+
+#include "core/base/error.h"
+#include "core/hair/hair_file.h"
+#include "core/hair/strand_geometry.h"
+
+namespace {
+
+using namespace hairbake;
+
+void demand(bool ok, const char* what) {
+    if (ok) return;
+    std::cerr << "broken promise: " << what << "\n";
+    std::abort();
+}
+
+/// `body` succeeds, or fails as bad input and nothing else.
+template <class Body>
+bool succeeds_or_refuses(const Body& body) {
+    try {
+        body();
+        return true;
+    } catch (const Error& error) {
+        demand(error.kind() == ErrorKind::bad_input, "an input's fault is bad_input");
+        demand(error.what()[0] != 0, "a refusal has a message");
+        return false;
+    }
+}
+
+void check_geometry(const HairModel& model, const StrandSettings& settings) {
+    const StrandGeometry strands = make_strand_geometry(model, settings);
+    const std::size_t v = model.vertex_count();
+    demand(strands.strand_count() == model.strand_count() && strands.vertex_count() == v, "counts are kept");
+    demand(strands.widths.size() == v && strands.opacities.size() == v && strands.segment_ok.size() == v,
+           "one value a vertex");
+    demand(strands.segment_count == v - model.strand_count(), "a strand of n points has n - 1 segments");
+    std::size_t ok = 0;
+    for (std::size_t i = 0; i < v; ++i) {
+        demand(strands.widths[i] > 0, "widths are positive");
+        demand(strands.opacities[i] >= 0 && strands.opacities[i] <= 1, "opacities lie in [0, 1]");
+        ok += strands.segment_ok[i];
+    }
+    demand(ok + strands.degenerate_segment_count == strands.segment_count, "every segment is counted once");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    HairModel model;
+    const auto bytes = std::as_bytes(std::span(data, size));
+    if (!succeeds_or_refuses([&] { model = read_hair(bytes, "fuzz.hair"); })) return 0;
+
+    std::ostringstream written;
+    write_hair(model, written);
+    demand(written.view() == std::string_view(reinterpret_cast<const char*>(data), size),
+           "a model that was read unchanged is written as the same bytes");
+
+    succeeds_or_refuses([&] { check_geometry(model, {}); });
+    StrandSettings settings;
+    settings.width = 0.01;
+    check_geometry(model, settings);
+    settings.opacity_from_file = true;
+    succeeds_or_refuses([&] { check_geometry(model, settings); });
+
+    const std::vector<float> transmittance(model.vertex_count(), 0.5f);
+    std::ostringstream baked;
+    write_hair(with_transmittance_as_colors(model, transmittance), baked);
+    const HairModel again = read_hair(std::as_bytes(std::span(baked.view())), "baked.hair");
+    demand(again.strand_begin == model.strand_begin && again.colors.size() == model.vertex_count(),
+           "grey colours change nothing else");
+    return 0;
+}
