@@ -21,10 +21,14 @@ struct BakeRequest {
     TransmittanceSettings transmittance;
     EnvironmentSettings environment_settings;  ///< part of the JSON block "irradiance"
     IrradianceSettings irradiance;
-    std::vector<std::string> outputs{"npy", "exr", "hair"};  ///< of npy, exr, hair
+    std::vector<std::string> outputs{"npy", "exr", "hair"};  ///< of npy, exr, hair; each at most once
+
+    /// Whether `outputs` names `format`.
+    bool wants(const std::string& format) const;
 };
 
-/// Throws Error(usage) naming the first field out of range, what was found and what is allowed.
+/// Throws Error(usage) naming the first field out of range, what was found and what is allowed. A request that passes
+/// can still fail on its files (a voxel size that is absurd for the model, a width that the model lacks).
 void validate(const BakeRequest& request);
 
 }  // namespace hairbake

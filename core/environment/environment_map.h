@@ -4,11 +4,15 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/vec.h"
 
 namespace hairbake {
+
+/// A 3 x 3 matrix by rows.
+using Matrix3 = std::array<Vec3d, 3>;
 
 /// Which direction the columns of a lat-long map look along. Row 0 is +Y in all of them.
 enum class LatLong {
@@ -24,19 +28,19 @@ enum class InvalidRadiance {
 
 /// The request's fields that say how an environment is read.
 struct EnvironmentSettings {
-    std::string layout = "auto";              ///< auto | latlong (crosses, strips and faces with the formats issue)
+    std::string layout = "auto";  ///< auto | latlong (crosses, strips and faces with the formats issue)
     LatLong latlong = LatLong::gltf;
-    std::array<double, 3> rotation_deg{};     ///< active, right-handed, about world X first, then Y, then Z
-    double exposure_stops = 0;                ///< radiance times 2^exposure_stops
-    std::array<double, 3> tint{1, 1, 1};      ///< radiance times tint, per channel, >= 0
+    std::array<double, 3> rotation_deg{};  ///< active, right-handed, about world X first, then Y, then Z
+    double exposure_stops = 0;             ///< radiance times 2^exposure_stops
+    std::array<double, 3> tint{1, 1, 1};   ///< radiance times tint, per channel, >= 0
     InvalidRadiance invalid_radiance = InvalidRadiance::reject;
 };
 
 /// What was found wrong in the pixels and what the policy did about it; goes to the manifest.
 struct RadianceRepairs {
     std::uint64_t negative_pixels = 0, nan_pixels = 0, infinite_pixels = 0;
-    double energy_removed = 0;   ///< sum over clamped negative values of |value| * solid angle, all channels
-    double energy_total = 0;     ///< sum of value * solid angle after repair, all channels
+    double energy_removed = 0;  ///< sum over clamped negative values of |value| * solid angle, all channels
+    double energy_total = 0;    ///< sum of value * solid angle after repair, all channels
 };
 
 /// Linear, scene-referred RGB radiance. pixels[row * width + column]; the texel's direction is that of the
@@ -46,14 +50,38 @@ struct EnvironmentMap {
     int width = 0, height = 0;
     std::vector<Vec3f> pixels;
     LatLong latlong = LatLong::gltf;
-    std::array<Vec3d, 3> rotation{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};  ///< rows of the active matrix
+    Matrix3 rotation{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};  ///< rows of the active matrix
 
-    std::string source_format;          ///< "hdr", "openexr", ... as OpenImageIO names it
-    std::string layout = "latlong";     ///< what `auto` took
+    std::string source_format;              ///< "hdr", "openexr", ... as OpenImageIO names it
+    std::string layout = "latlong";         ///< what `auto` took
     std::string primaries = "unspecified";  ///< colour space of the input, kept and named, never converted
-    bool low_dynamic_range = false;     ///< 8 or 16 bit integer input, sRGB decoded
+    bool low_dynamic_range = false;         ///< 8 or 16 bit integer input, sRGB decoded
     RadianceRepairs repairs;
     std::vector<std::string> warnings;  ///< for the person who gave the file
 };
+
+/// m * v, and transpose(m) * v: for the orthogonal matrices here the inverse.
+inline Vec3d transform(const Matrix3& m, const Vec3d& v) { return {dot(m[0], v), dot(m[1], v), dot(m[2], v)}; }
+inline Vec3d transform_back(const Matrix3& m, const Vec3d& v) { return m[0] * v.x + m[1] * v.y + m[2] * v.z; }
+
+/// "gltf", "filament", "openexr".
+std::string_view name_of(LatLong convention);
+
+/// Active right-handed rotation about world X first, then Y, then Z, in degrees.
+Matrix3 rotation_matrix(const std::array<double, 3>& rotation_deg);
+
+/// The orthogonal matrix from the map's polar frame (latlong.h) to the world: the convention, then the rotation.
+/// Its determinant is +1 for `filament` and -1 for the others: they differ by a mirror image.
+Matrix3 map_to_world(const EnvironmentMap& map);
+
+/// A point of the map in pixels: x in [0, width], y in [0, height]; texel (column, row) has its centre at + 0.5.
+struct MapPoint {
+    double x = 0, y = 0;
+};
+
+/// World direction (unit) of a point of the map, and the point of a world direction (any length but 0).
+/// At the poles any x is right; x = width and x = 0 are the same meridian. Inverse of each other. Thread-safe.
+Vec3d direction_of(const EnvironmentMap& map, MapPoint point);
+MapPoint point_of(const EnvironmentMap& map, const Vec3d& direction);
 
 }  // namespace hairbake

@@ -7,33 +7,31 @@
 
 #include "core/base/progress.h"
 #include "core/base/vec.h"
+#include "core/environment/cube_map.h"
 #include "core/environment/environment_map.h"
 
 namespace hairbake {
 
 enum class IrradianceMethod {
-    exact,  ///< every pixel, through flux-centroid lights and a kernel table
-    sh      ///< zonal convolution in spherical harmonics
+    exact,  ///< every pixel, through flux-centroid lights (light_set.h) and tabulated kernels (kernel_sum.h)
+    sh      ///< zonal convolution in spherical harmonics (sh_maps.h)
 };
 
 /// The request's `irradiance` block without the fields of EnvironmentSettings.
 struct IrradianceSettings {
     std::string model = "kajiya-kay";
-    int face_size = 16;        ///< texels per cube edge, 4 to 256
-    int specular_maps = 33;    ///< M + 1, from 2 to 257; theta'_m = m pi / M
-    double exponent = 64;      ///< Kajiya-Kay p, 0 to 4096
+    int face_size = 16;      ///< texels per cube edge, 4 to 256
+    int specular_maps = 33;  ///< M + 1, from 2 to 257; theta'_m = m pi / M
+    double exponent = 64;    ///< Kajiya-Kay p, 0 to 4096
     IrradianceMethod method = IrradianceMethod::exact;
-    std::optional<int> sh_bands_diffuse;   ///< 1 to 128 bands (l = 0 .. bands - 1); empty: auto from sh_error
+    std::optional<int> sh_bands_diffuse;  ///< 1 to 128 bands (l = 0 .. bands - 1); empty: auto from sh_error
     std::optional<int> sh_bands_specular;
-    double sh_error = 0.01;    ///< target of auto: RMS over the largest value of all maps, (0, 1]
+    double sh_error = 0.01;      ///< target of auto: RMS over the largest value of all maps, (0, 1]
     bool clamp_negative = true;  ///< sh only: negative texels become 0, their mass is reported
 };
 
-/// A cube map in the house orientation (design, Conventions): texels[(face * size + row) * size + column].
-using CubeTexels = std::vector<Vec3f>;
-
 struct MapStatistics {
-    Vec3d mean;              ///< weighted by texel solid angle
+    Vec3d mean;  ///< weighted by texel solid angle
     Vec3f minimum, maximum;
     double clamped_negative_mass = 0;  ///< sum of |negative| * texel solid angle over channels, before clamping
 };
@@ -42,29 +40,36 @@ struct MapStatistics {
 struct IrradianceMaps {
     int face_size = 0;
     double exponent = 0;
-    CubeTexels diffuse;                 ///< D(t)
-    std::vector<CubeTexels> specular;   ///< S_m(t), m = 0 .. M
+    CubeTexels diffuse;                ///< D(t)
+    std::vector<CubeTexels> specular;  ///< S_m(t), m = 0 .. M
     MapStatistics diffuse_statistics;
     std::vector<MapStatistics> specular_statistics;
 
-    /// Real SH coefficients of the environment, [bands * bands] in the order l*l + l + m of spec section 0.
+    /// Real SH coefficients of the environment in the world frame, [bands * bands] in the order l*l + l + m of spec
+    /// section 0. `exact` gives 8 bands, which keeps it cheap; `sh` 8 or as many as it used.
     std::vector<Vec3d> environment_sh;
     int environment_sh_bands = 0;
 
     /// Bound for |linear interpolation between neighbouring theta' - truth| at any t and theta', per channel, in
-    /// the unit of the maps and over the largest value of all maps.
+    /// the unit of the maps and over the largest value of all maps (interpolation_bound.h says how). `sh` gathers the
+    /// environment more coarsely for it, so its bound is a little larger.
     Vec3d interpolation_bound;
     double interpolation_bound_relative = 0;
 
-    /// sh only: bands used and predicted truncation error (RMS over the largest value of all maps).
+    /// sh only: bands used and predicted truncation error (RMS over the largest value of all maps;
+    /// sh_maps.h says how). Zero for exact.
     int sh_bands_diffuse = 0, sh_bands_specular = 0;
     double predicted_error_diffuse = 0, predicted_error_specular = 0;
 
     std::vector<std::string> warnings;
 };
 
+/// Checks every field. Throws Error(usage) naming the first one out of range.
+void validate(const IrradianceSettings& settings);
+
 /// The irradiance stage. Reads nothing but its arguments; the same arguments give the same bytes for any thread count.
-/// Throws Error(usage) naming the field for a value out of range, Error(cancelled).
+/// Throws Error(usage) naming the field for a value out of range, Error(bad_input) for an environment whose pixels were
+/// not repaired (negative, infinite, NaN), Error(cancelled).
 IrradianceMaps bake_irradiance(const EnvironmentMap& environment, const IrradianceSettings& settings,
                                Progress& progress);
 

@@ -1,0 +1,22 @@
+// The subcommands of the program, each in a file of its own.
+#pragma once
+
+#include <functional>
+
+namespace CLI {
+class App;
+}
+
+namespace hairbake {
+
+/// What the parsed command line asks for; throws what the command throws.
+using Action = std::function<void()>;
+
+/// Each adds its subcommand to `app`; when that is the one asked for, parsing fills `action`.
+void add_bake_command(CLI::App& app, Action& action);
+void add_info_command(CLI::App& app, Action& action);
+void add_sample_command(CLI::App& app, Action& action);
+void add_compare_command(CLI::App& app, Action& action);
+void add_presets_command(CLI::App& app, Action& action);
+
+}  // namespace hairbake

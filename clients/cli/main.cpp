@@ -1,0 +1,43 @@
+// hairbake: the command line.
+#include <CLI/CLI.hpp>
+
+#include "clients/cli/commands.h"
+#include "clients/cli/exit_code.h"
+#include "clients/cli/signal_watch.h"
+#include "core/bake.h"
+
+namespace {
+
+int report_failure() {
+    const hairbake::Error error = hairbake::current_error();
+    std::fprintf(stderr, "hairbake: %s%s\n", error.kind() == hairbake::ErrorKind::internal ? "internal error: " : "",
+                 error.what());
+    return static_cast<int>(hairbake::exit_code(error.kind()));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    hairbake::block_signals();
+    CLI::App app("Bakes irradiance cube maps and per-vertex transmittance for hair.", "hairbake");
+    hairbake::Action action;
+    app.set_version_flag("--version", "hairbake " + hairbake::version());
+    app.require_subcommand(1);
+    app.footer(hairbake::exit_code_help());
+    hairbake::add_bake_command(app, action);
+    hairbake::add_info_command(app, action);
+    hairbake::add_sample_command(app, action);
+    hairbake::add_compare_command(app, action);
+    hairbake::add_presets_command(app, action);
+    try {
+        app.parse(argc, argv);
+        action();
+        return static_cast<int>(hairbake::ExitCode::ok);
+    } catch (const CLI::ParseError& error) {
+        const bool asked = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);  // --help, --version
+        app.exit(error);
+        return static_cast<int>(asked ? hairbake::ExitCode::ok : hairbake::ExitCode::usage);
+    } catch (...) {
+        return report_failure();
+    }
+}

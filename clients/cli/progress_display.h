@@ -1,0 +1,26 @@
+// Progress as a bar on a terminal, as JSON lines, or not at all.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/progress.h"
+
+namespace hairbake {
+
+/// A stage and its share of the whole, in any unit.
+struct PlannedStage {
+    std::string name;
+    double share;
+};
+
+/// `mode`: "auto" is a bar on standard error when that is a terminal, else nothing; "json" is one JSON object a line on
+/// standard output; "none" is silent. Updates at most ten times a second, from any thread.
+std::unique_ptr<Progress> make_progress_display(const std::string& mode, const std::vector<PlannedStage>& stages);
+
+/// `text` as a JSON string with its quotes. Bytes that are not UTF-8 stay as they are.
+std::string json_string(std::string_view text);
+
+}  // namespace hairbake

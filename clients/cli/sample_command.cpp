@@ -1,0 +1,41 @@
+// hairbake sample
+#include <CLI/CLI.hpp>
+
+#include "clients/cli/commands.h"
+#include "clients/cli/progress_display.h"
+#include "clients/cli/signal_watch.h"
+#include "core/sample.h"
+
+namespace hairbake {
+
+void add_sample_command(CLI::App& app, Action& action) {
+    struct Options {
+        std::string folder;
+        SampleSettings settings;
+    };
+    CLI::App* command = app.add_subcommand("sample", "Write a sample groom, a head and three HDR skies");
+    const auto options = std::make_shared<Options>();
+    SampleSettings& settings = options->settings;
+    command->add_option("folder", options->folder, "where the files go; files of their names are replaced")
+        ->required()
+        ->type_name("DIR");
+    CLI::Option* style = command->add_option("--style", settings.style, "straight, wavy or curly");
+    CLI::Option* vertices = command->add_option("--vertices", settings.vertices, "vertices of the groom");
+    style->check(CLI::IsMember({"straight", "wavy", "curly"}));
+    command->add_option("--paper-model", settings.paper_model, "1 to 4: a groom of a published model's size")
+        ->check(CLI::Range(1, 4))
+        ->excludes(style)
+        ->excludes(vertices);
+    command->add_option("--map-width", settings.map_width, "width of the maps, even, 16 to 4096");
+    command->add_option("--seed", settings.seed, "the same seed gives the same files");
+    command->callback([options, &action] {
+        action = [options] {
+            const auto progress = make_progress_display("auto", {{"write", 1}});
+            const SignalWatch watch(*progress, [] {});
+            for (const auto& file : write_samples(options->folder, options->settings, *progress))
+                std::printf("%s\n", file.c_str());
+        };
+    });
+}
+
+}  // namespace hairbake

@@ -1,0 +1,25 @@
+// Ctrl-C and SIGTERM: an orderly stop, and a hard one when that takes too long.
+#pragma once
+
+#include <functional>
+#include <thread>
+
+#include "core/base/progress.h"
+
+namespace hairbake {
+
+/// Blocks SIGINT and SIGTERM in this thread and all that it starts later, so that SignalWatch alone receives them;
+/// ignores SIGPIPE and SIGXFSZ, whose failures show as errors of the write. Called first thing in main().
+void block_signals();
+
+/// While it lives, a signal cancels `progress`. When the process still runs 0.8 s later, or a second signal comes,
+/// `clean_up` is called and the process ends with the exit code of `cancelled`. No handler runs in signal context.
+class SignalWatch {
+public:
+    SignalWatch(Progress& progress, std::function<void()> clean_up);
+
+private:
+    std::jthread thread_;
+};
+
+}  // namespace hairbake

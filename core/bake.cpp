@@ -1,0 +1,153 @@
+#include "core/bake.h"
+
+#include <chrono>
+#include <fstream>
+#include <new>
+#include <numeric>
+
+#include "core/base/digest.h"
+#include "core/base/direction_set.h"
+#include "core/base/parallel.h"
+#include "core/environment/environment_reader.h"
+#include "core/hair/hair_file.h"
+#include "core/hair/strand_geometry.h"
+#include "core/output/manifest.h"
+#include "core/output/result_files.h"
+#include "core/output/result_folder.h"
+#include "core/reference/tracer.h"
+#include "core/request_keys.h"
+
+namespace hairbake {
+namespace {
+
+/// Runs `body` as the stage `name`: tells its begin and end, and adds its wall time to the result's.
+template <class Body>
+void run_stage(BakeResult& result, Progress& progress, const std::string& name, const Body& body) {
+    progress.check();
+    progress.report(name, 0);
+    const auto start = std::chrono::steady_clock::now();
+    body();
+    result.measured.timings_s[name] += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    progress.report(name, 1);
+}
+
+/// The largest resident size of this process so far; 0 where the kernel does not tell.
+std::uint64_t peak_memory() {
+    std::ifstream status("/proc/self/status");
+    for (std::string word; status >> word;) {
+        std::uint64_t kilobytes = 0;
+        if (word == "VmHWM:" && status >> kilobytes) return kilobytes * 1024;
+    }
+    return 0;
+}
+
+void add_warnings(BakeResult& result, const std::vector<std::string>& warnings) {
+    result.warnings.insert(result.warnings.end(), warnings.begin(), warnings.end());
+}
+
+HairFacts facts_of(const StrandGeometry& strands) {
+    return {strands.strand_count(),           strands.vertex_count(), strands.segment_count,
+            strands.degenerate_segment_count, strands.bounds_min,     strands.bounds_max};
+}
+
+/// A of every vertex by tracing the true strands.
+Transmittance trace_all(const StrandScene& scene, const TransmittanceSettings& settings, Progress& progress) {
+    std::vector<std::uint32_t> vertices(scene.strands().vertex_count());
+    std::iota(vertices.begin(), vertices.end(), 0u);
+    const auto directions = make_directions(settings.direction_set, settings.directions, settings.seed);
+    Transmittance transmittance;
+    transmittance.average = trace_transmittance(scene, vertices, directions, progress);
+    transmittance.directions = settings.directions;
+    return transmittance;
+}
+
+void read_hair_stage(BakeResult& result, Progress& progress) {
+    run_stage(result, progress, "read_hair", [&] {
+        result.hair_digest = digest_of_file(*result.request.hair);
+        result.transmittance_key = transmittance_key(result.hair_digest, result.request);
+        result.hair = read_hair(*result.request.hair);
+    });
+}
+
+/// Hair in memory to A in memory, and A's error bar.
+void transmittance_stage(BakeResult& result, Progress& progress) {
+    const TransmittanceSettings& settings = result.request.transmittance;
+    StrandGeometry strands;
+    std::optional<StrandScene> scene;
+    run_stage(result, progress, "transmittance", [&] {
+        strands = make_strand_geometry(*result.hair, result.request.strand);
+        if (settings.method == TransmittanceMethod::trace) {
+            scene.emplace(strands, progress);
+            result.transmittance = trace_all(*scene, settings, progress);
+        } else {
+            result.transmittance = bake_transmittance_volume(strands, settings, progress);
+        }
+    });
+    result.hair_facts = facts_of(strands);
+    add_warnings(result, result.transmittance->warnings);
+    if (settings.reference_vertices == 0) return;
+    run_stage(result, progress, "reference", [&] {
+        if (!scene) scene.emplace(strands, progress);
+        result.error_bar =
+            measure_error(*scene, result.transmittance->average, settings.reference_vertices, settings.seed, progress);
+    });
+}
+
+void read_environment_stage(BakeResult& result, Progress& progress) {
+    run_stage(result, progress, "read_environment", [&] {
+        const std::string& file = *result.request.environment;
+        result.environment_digest = digest_of_file(file);
+        result.irradiance_key = irradiance_key(result.environment_digest, result.request);
+        result.environment = read_environment(file, result.request.environment_settings, progress);
+    });
+    add_warnings(result, result.environment->warnings);
+}
+
+void irradiance_stage(BakeResult& result, Progress& progress) {
+    run_stage(result, progress, "irradiance",
+              [&] { result.irradiance = bake_irradiance(*result.environment, result.request.irradiance, progress); });
+    result.environment->pixels = {};
+    add_warnings(result, result.irradiance->warnings);
+}
+
+}  // namespace
+
+BakeResult bake(const BakeRequest& request, int threads, Progress& progress) {
+    validate(request);
+    BakeResult result;
+    result.request = request;
+    try {
+        with_threads(threads, [&] {
+            result.measured.threads = thread_count();
+            if (request.hair) {
+                read_hair_stage(result, progress);
+                transmittance_stage(result, progress);
+            }
+            if (request.environment) {
+                read_environment_stage(result, progress);
+                irradiance_stage(result, progress);
+            }
+        });
+    } catch (const std::bad_alloc&) {
+        throw Error(ErrorKind::out_of_resources, "memory ran out; fewer voxels or smaller maps need less");
+    }
+    result.id = bake_id(result.transmittance_key, result.irradiance_key, request);
+    result.measured.peak_memory_bytes = peak_memory();
+    return result;
+}
+
+void write_result(BakeResult& result, const std::filesystem::path& folder, Progress& progress) {
+    std::optional<ResultFolder> target;
+    std::vector<WrittenFile> files;
+    run_stage(result, progress, "write", [&] {
+        target.emplace(folder);
+        files = write_files(result, target->path(), progress);
+    });
+    result.measured.peak_memory_bytes = peak_memory();
+    // The manifest is the last file, as it names all others; its own writing is in no timing.
+    write_manifest(result, files, target->path());
+    progress.check();
+    target->commit();
+}
+
+}  // namespace hairbake

@@ -1,0 +1,104 @@
+#include "core/environment/radiance_repair.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "core/base/parallel.h"
+#include "core/environment/latlong.h"
+
+namespace hairbake {
+namespace {
+
+struct RowFacts {
+    int first_invalid = -1;  // column
+    float largest_finite = 0;
+    RadianceRepairs repairs;
+};
+
+bool valid(float value) { return value >= 0 && std::isfinite(value); }
+
+RowFacts inspect(const Vec3f* row, int width) {
+    RowFacts facts;
+    for (int x = 0; x < width; ++x) {
+        bool negative = false, nan = false, infinite = false;
+        for (int channel = 0; channel < 3; ++channel) {
+            const float value = row[x][channel];
+            if (valid(value)) {
+                facts.largest_finite = std::max(facts.largest_finite, value);
+                continue;
+            }
+            nan |= std::isnan(value);
+            infinite |= std::isinf(value);
+            negative |= value < 0 && std::isfinite(value);
+        }
+        facts.repairs.nan_pixels += nan;
+        facts.repairs.infinite_pixels += infinite;
+        facts.repairs.negative_pixels += negative;
+        if ((nan || infinite || negative) && facts.first_invalid < 0) facts.first_invalid = x;
+    }
+    return facts;
+}
+
+void clamp_row(Vec3f* row, int width, float largest, double solid_angle, RadianceRepairs& repairs) {
+    double removed = 0, total = 0;
+    for (int x = 0; x < width; ++x)
+        for (int channel = 0; channel < 3; ++channel) {
+            float& value = row[x][channel];
+            if (!valid(value)) {
+                if (value < 0 && std::isfinite(value)) removed -= value;
+                value = value > 0 ? largest : 0;  // +infinity; all others are 0
+            }
+            total += value;
+        }
+    repairs.energy_removed += removed * solid_angle;
+    repairs.energy_total += total * solid_angle;
+}
+
+void refuse(const EnvironmentMap& map, int x, int y, const std::string& where) {
+    const Vec3f pixel = map.pixels[std::size_t(y) * map.width + x];
+    int channel = 0;
+    while (valid(pixel[channel])) ++channel;
+    std::ostringstream text;
+    text << where << ": the "
+         << (channel == 0   ? "red"
+             : channel == 1 ? "green"
+                            : "blue")
+         << " radiance at pixel (" << x << ", " << y << ") is " << pixel[channel]
+         << "; allowed is finite and not negative. irradiance.invalid_radiance = clamp repairs and counts such pixels";
+    throw Error(ErrorKind::bad_input, text.str(), "irradiance.invalid_radiance");
+}
+
+void add(RadianceRepairs& sum, const RadianceRepairs& row) {
+    sum.negative_pixels += row.negative_pixels;
+    sum.nan_pixels += row.nan_pixels;
+    sum.infinite_pixels += row.infinite_pixels;
+    sum.energy_removed += row.energy_removed;
+    sum.energy_total += row.energy_total;
+}
+
+}  // namespace
+
+void repair_radiance(EnvironmentMap& map, InvalidRadiance policy, const std::string& where, const Progress& progress) {
+    std::vector<RowFacts> facts(map.height);
+    parallel_for(map.height, 16, [&](std::size_t begin, std::size_t end) {
+        progress.check();
+        for (std::size_t y = begin; y < end; ++y) facts[y] = inspect(map.pixels.data() + y * map.width, map.width);
+    });
+    float largest = 0;
+    for (int y = 0; y < map.height; ++y) {
+        if (facts[y].first_invalid >= 0 && policy == InvalidRadiance::reject)
+            refuse(map, facts[y].first_invalid, y, where);
+        largest = std::max(largest, facts[y].largest_finite);
+    }
+    const LatLongRows rows = latlong_rows(map.width, map.height);
+    parallel_for(map.height, 16, [&](std::size_t begin, std::size_t end) {
+        progress.check();
+        for (std::size_t y = begin; y < end; ++y)
+            clamp_row(map.pixels.data() + y * map.width, map.width, largest, rows.solid_angle[y], facts[y].repairs);
+    });
+    map.repairs = {};
+    for (const RowFacts& row : facts) add(map.repairs, row.repairs);
+}
+
+}  // namespace hairbake

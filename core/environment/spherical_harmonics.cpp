@@ -1,0 +1,84 @@
+#include "core/environment/spherical_harmonics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/base/gauss_legendre.h"
+#include "core/base/parallel.h"
+
+namespace hairbake {
+
+using std::numbers::pi;
+
+ShBasis::ShBasis(int bands) : bands_(bands) {
+    double square = 1 / (4 * pi);  // P_mm^2 / sin^2m = (2m + 1) / (4 pi) * product of (2k - 1) / (2k)
+    for (int m = 0; m < bands; ++m) {
+        if (m > 0) square *= (2 * m + 1.0) / (2 * m);
+        first_.push_back(std::sqrt(square));
+        column_begin_.push_back(a_.size());
+        for (int l = m; l < bands; ++l) {
+            const double l2 = double(l) * l, m2 = double(m) * m, k2 = double(l - 1) * (l - 1);
+            a_.push_back(l == m ? 0 : std::sqrt((4 * l2 - 1) / (l2 - m2)));
+            b_.push_back(l <= m + 1 ? 0 : std::sqrt((k2 - m2) / (4 * k2 - 1)));
+        }
+    }
+}
+
+void ShBasis::run_column(int m, double z, double first, std::span<double> out) const {
+    const double* a = a_.data() + column_begin(m);
+    const double* b = b_.data() + column_begin(m);
+    out[0] = first;
+    double before = 0;
+    for (int k = 1; k < bands_ - m; ++k) {
+        out[k] = a[k] * (z * out[k - 1] - b[k] * before);
+        before = out[k - 1];
+    }
+}
+
+void ShBasis::legendre_column(int m, double z, double sine, std::span<double> out) const {
+    run_column(m, z, first_[m] * std::pow(sine, m), out);
+}
+
+void ShBasis::evaluate(const Vec3d& direction, std::span<double> values) const {
+    std::vector<double> column(bands_);
+    double re = 1, im = 0;  // (x + i y)^m = sin^m exp(i m phi)
+    for (int m = 0; m < bands_; ++m) {
+        run_column(m, direction.z, m == 0 ? first_[0] : std::numbers::sqrt2 * first_[m], column);
+        for (int l = m; l < bands_; ++l) {
+            values[l * l + l + m] = column[l - m] * re;
+            if (m > 0) values[l * l + l - m] = column[l - m] * im;
+        }
+        const double next = re * direction.x - im * direction.y;
+        im = re * direction.y + im * direction.x;
+        re = next;
+    }
+}
+
+std::vector<Vec3d> rotate_sh(std::span<const Vec3d> coefficients, int bands, const Matrix3& orthogonal) {
+    const ShBasis basis(bands);
+    const Quadrature rule = gauss_legendre(bands);  // exact in z for degree 2 (bands - 1)
+    const int azimuths = 2 * bands;                 // exact in phi for |m| + |m'| < 2 bands
+    std::vector<std::vector<Vec3d>> partial(bands);
+    parallel_for(bands, 1, [&](std::size_t node, std::size_t) {
+        std::vector<Vec3d> sums(basis.count());
+        std::vector<double> y(basis.count());
+        const double z = rule.nodes[node], sine = std::sqrt(1 - z * z);
+        for (int k = 0; k < azimuths; ++k) {
+            const Vec3d g{sine * std::cos(pi * k / bands), sine * std::sin(pi * k / bands), z};
+            basis.evaluate(transform_back(orthogonal, g), y);
+            Vec3d value;
+            for (int i = 0; i < basis.count(); ++i) value += coefficients[i] * y[i];
+            basis.evaluate(g, y);
+            value *= rule.weights[node] * pi / bands;
+            for (int i = 0; i < basis.count(); ++i) sums[i] += value * y[i];
+        }
+        partial[node] = std::move(sums);
+    });
+    std::vector<Vec3d> rotated(basis.count());
+    for (const std::vector<Vec3d>& sums : partial)
+        for (int i = 0; i < basis.count(); ++i) rotated[i] += sums[i];
+    return rotated;
+}
+
+}  // namespace hairbake

@@ -1,0 +1,166 @@
+#include "core/inspect.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <span>
+#include <system_error>
+
+#include "core/base/error.h"
+#include "core/environment/environment_reader.h"
+#include "core/environment/latlong.h"
+#include "core/hair/hair_file.h"
+#include "core/output/manifest.h"
+
+namespace hairbake {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class T>
+Json triple(const Vec3<T>& v) {
+    return {v.x, v.y, v.z};
+}
+
+/// Smallest and largest of the array, or the header's default where the file has none.
+Json range_of(std::span<const float> values, float otherwise) {
+    if (values.empty()) return {{"default", otherwise}};
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    return {{"minimum", *low}, {"maximum", *high}};
+}
+
+Json hair_facts(const fs::path& file) {
+    const HairModel model = read_hair(file);
+    Json facts{{"kind", "hair model"},
+               {"format", "HAIR"},
+               {"strands", model.strand_count()},
+               {"vertices", model.vertex_count()}};
+    std::uint32_t longest = 0;
+    for (std::size_t s = 0; s < model.strand_count(); ++s)
+        longest = std::max(longest, model.strand_begin[s + 1] - model.strand_begin[s]);
+    facts["longest_strand"] = longest;
+    if (!model.positions.empty()) {
+        Vec3f low = model.positions[0], high = low;
+        for (const Vec3f& p : model.positions) {
+            low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+            high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+        }
+        facts["bounds"] = {{"minimum", triple(low)}, {"maximum", triple(high)}};
+    }
+    facts["thickness"] = range_of(model.thickness, model.default_thickness);
+    facts["transparency"] = range_of(model.transparency, model.default_transparency);
+    facts["colors"] = model.colors.empty() ? Json(triple(model.default_color)) : Json("one a vertex");
+    const char* info = model.info.data();
+    facts["info"] = std::string(info, std::find(info, info + model.info.size(), '\0'));
+    if (facts["thickness"].value("maximum", model.default_thickness) <= 0)
+        facts["warnings"] = {"the model has no strand width: a bake needs strand.width (--width)"};
+    return facts;
+}
+
+Json brightest_pixel(const EnvironmentMap& map) {
+    const auto sum = [](const Vec3f& c) { return c.x + c.y + c.z; };
+    const auto brightest = std::max_element(map.pixels.begin(), map.pixels.end(),
+                                            [&](const Vec3f& a, const Vec3f& b) { return sum(a) < sum(b); });
+    const auto index = static_cast<std::size_t>(brightest - map.pixels.begin());
+    const std::size_t row = index / map.width, column = index % map.width;
+    return {{"row", row},
+            {"column", column},
+            {"radiance", triple(*brightest)},
+            {"direction", triple(direction_of(map, {column + 0.5, row + 0.5}))}};
+}
+
+Json mean_radiance(const EnvironmentMap& map) {
+    const LatLongRows rows = latlong_rows(map.width, map.height);
+    Vec3d sum;
+    for (std::size_t i = 0; i < map.pixels.size(); ++i)
+        sum += Vec3d(map.pixels[i]) * rows.solid_angle[i / static_cast<std::size_t>(map.width)];
+    return triple(sum / (4 * std::numbers::pi));
+}
+
+Json environment_facts(const fs::path& file, Progress& progress) {
+    EnvironmentSettings settings;
+    settings.invalid_radiance = InvalidRadiance::clamp;  // so that every map can be looked at; counted below
+    const EnvironmentMap map = read_environment(file, settings, progress);
+    Json facts{{"kind", "environment map"}, {"format", map.source_format}, {"width", map.width},
+               {"height", map.height},      {"layout", map.layout},        {"primaries", map.primaries}};
+    facts["low_dynamic_range"] = map.low_dynamic_range;
+    facts["mean_radiance"] = mean_radiance(map);
+    facts["brightest_pixel"] = brightest_pixel(map);
+    const RadianceRepairs& repairs = map.repairs;
+    facts["invalid_pixels"] = {
+        {"negative", repairs.negative_pixels}, {"nan", repairs.nan_pixels}, {"infinite", repairs.infinite_pixels}};
+    facts["negative_energy"] = repairs.energy_removed;
+    facts["warnings"] = map.warnings;
+    return facts;
+}
+
+Json result_facts(const fs::path& folder) {
+    files_of_result(folder);  // throws unless it is a result
+    std::ifstream stream(folder / "manifest.json", std::ios::binary);
+    const Json manifest = Json::parse(std::string{std::istreambuf_iterator<char>(stream), {}});
+    Json facts{{"kind", "bake result"}};
+    for (const char* name : {"id", "stages", "inputs", "transmittance", "error_bar", "repairs", "warnings", "versions",
+                             "timings_s", "peak_memory_bytes"})
+        if (manifest.contains(name)) facts[name] = manifest[name];
+    Json files = Json::object();
+    for (const Json& file : manifest["files"]) files[file.at("name").get<std::string>()] = file.value("bytes", 0ull);
+    facts["files"] = files;
+    return facts;
+}
+
+bool begins_as_hair(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw Error(ErrorKind::bad_input, file.string() + ": " + std::generic_category().message(errno));
+    char magic[4] = {};
+    stream.read(magic, sizeof magic);
+    return std::memcmp(magic, "HAIR", 4) == 0;
+}
+
+std::string value_text(const Json& value) {
+    if (value.is_string()) return value.get<std::string>();
+    if (value.is_number_float()) {
+        char buffer[32];
+        std::snprintf(buffer, sizeof buffer, "%.6g", value.get<double>());
+        return buffer;
+    }
+    if (!value.is_array()) return value.dump();
+    std::string list;
+    for (const Json& item : value) list += (list.empty() ? "" : "  ") + value_text(item);
+    return list;
+}
+
+void add_lines(const Json& object, const std::string& prefix, std::string& lines) {
+    for (const auto& [name, value] : object.items()) {
+        if (value.is_object()) {
+            add_lines(value, prefix + name + ".", lines);
+        } else if (!(value.is_array() && value.empty())) {
+            std::string label = prefix + name;
+            label.resize(std::max<std::size_t>(label.size() + 2, 34), ' ');
+            lines += label + value_text(value) + "\n";
+        }
+    }
+}
+
+}  // namespace
+
+std::string inspect(const fs::path& path, Progress& progress) {
+    Json facts{{"path", path.string()}};
+    if (fs::is_directory(path))
+        facts.update(result_facts(path));
+    else
+        facts.update(begins_as_hair(path) ? hair_facts(path) : environment_facts(path, progress));
+    return facts.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string as_lines(const std::string& json_object) {
+    std::string lines;
+    add_lines(Json::parse(json_object), "", lines);
+    return lines;
+}
+
+}  // namespace hairbake

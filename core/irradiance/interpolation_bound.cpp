@@ -1,0 +1,77 @@
+#include "core/irradiance/interpolation_bound.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "core/environment/cube_map.h"
+#include "core/fiber/kajiya_kay.h"
+#include "core/irradiance/kernel_sum.h"
+
+namespace hairbake {
+
+using std::numbers::pi;
+
+namespace {
+
+constexpr int tangent_size = 16;
+constexpr int samples = 4096;  // of the sum of angles, over [0, 2 pi]
+constexpr double sample_step = 2 * pi / samples;
+
+// Largest error of interpolating one light's kernel over the positions f between two maps; `sum` = theta + theta'_m.
+std::vector<double> worst_error_by_sum(double exponent, double spacing) {
+    constexpr int positions = 64;
+    std::vector<double> worst(samples + 1);
+    for (int i = 0; i <= samples; ++i) {
+        const double sum = i * sample_step;
+        const double low = kajiya_kay_specular(sum, 0, exponent), high = kajiya_kay_specular(sum, spacing, exponent);
+        for (int k = 0; k <= positions; ++k) {
+            const double f = k / double(positions);
+            const double truth = kajiya_kay_specular(sum, f * spacing, exponent);
+            worst[i] = std::max(worst[i], std::abs((1 - f) * low + f * high - truth));
+        }
+    }
+    return worst;
+}
+
+// Running maximum over +- reach (radians).
+std::vector<double> widened(const std::vector<double>& values, double reach) {
+    const int width = static_cast<int>(std::ceil(reach / sample_step)) + 1, count = static_cast<int>(values.size());
+    std::vector<double> result(values.size());
+    for (int i = 0; i < count; ++i)
+        result[i] =
+            *std::max_element(values.begin() + std::max(0, i - width), values.begin() + std::min(count, i + width + 1));
+    return result;
+}
+
+std::vector<Vec3d> half_of_the_cube() {
+    std::vector<Vec3d> tangents;
+    for (const int face : {0, 2, 4})
+        for (int row = 0; row < tangent_size; ++row)
+            for (int column = 0; column < tangent_size; ++column)
+                tangents.push_back(cube_texel_direction(tangent_size, face, row, column));
+    return tangents;
+}
+
+}  // namespace
+
+Vec3d interpolation_bound(const LightSet& lights, double exponent, int specular_maps, const Progress& progress) {
+    const AngleGrid grid(1024);
+    const double spacing = pi / (specular_maps - 1);
+    const double texel_radius =
+        std::numbers::sqrt2 / tangent_size;  // half diagonal at a face's centre, where it is largest
+    const double reach = texel_radius + lights.radius + grid.largest_step();
+    const std::vector<double> worst = widened(worst_error_by_sum(exponent, spacing), reach);
+    KernelTable table(grid);
+    for (int m = 0; m + 1 < specular_maps; ++m)
+        table.add_row([&](double theta) { return worst[std::lround((theta + m * spacing) / sample_step)]; });
+    // The opposite tangent swaps theta for pi - theta, which turns interval m into interval M - 1 - m: covered.
+    const std::vector<Vec3f> sums = sum_kernels(lights, half_of_the_cube(), table, progress);
+    Vec3d bound;
+    for (const Vec3f& sum : sums)
+        for (int channel = 0; channel < 3; ++channel) bound[channel] = std::max(bound[channel], double(sum[channel]));
+    return bound * 1.02;
+}
+
+}  // namespace hairbake

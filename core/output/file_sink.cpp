@@ -1,0 +1,60 @@
+#include "core/output/file_sink.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+
+#include "core/base/error.h"
+
+namespace hairbake {
+
+void throw_system_error(const std::filesystem::path& file, int error) {
+    const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG || error == ENOMEM || error == EMFILE;
+    throw Error(full ? ErrorKind::out_of_resources : ErrorKind::bad_input,
+                file.string() + " cannot be written: " + std::generic_category().message(error));
+}
+
+FileSink::FileSink(const std::filesystem::path& file)
+    : file_(file), descriptor_(::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)) {
+    if (descriptor_ < 0) throw_system_error(file_, errno);
+}
+
+FileSink::~FileSink() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void FileSink::write(std::span<const std::byte> bytes) {
+    constexpr std::size_t piece = 1 << 18;
+    while (!bytes.empty()) {
+        const std::size_t count = std::min(bytes.size(), piece - pending_.size());
+        pending_.insert(pending_.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(count));
+        bytes = bytes.subspan(count);
+        if (pending_.size() == piece) flush();
+    }
+}
+
+void FileSink::flush() {
+    digest_.add(pending_);
+    bytes_ += pending_.size();
+    for (std::span<const std::byte> rest = pending_; !rest.empty();) {
+        const ssize_t written = ::write(descriptor_, rest.data(), rest.size());
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) throw_system_error(file_, errno);
+        rest = rest.subspan(static_cast<std::size_t>(written));
+    }
+    pending_.clear();
+}
+
+WrittenFile FileSink::finish() {
+    flush();
+    if (::fsync(descriptor_) != 0 && errno != EINVAL) throw_system_error(file_, errno);
+    const int closed = ::close(descriptor_);
+    descriptor_ = -1;
+    if (closed != 0) throw_system_error(file_, errno);
+    return {file_.filename().string(), digest_.hex(), bytes_, {}, {}};
+}
+
+}  // namespace hairbake

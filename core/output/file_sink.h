@@ -1,0 +1,53 @@
+// A result file being written: bytes go to disk and into its digest at once.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/digest.h"
+
+namespace hairbake {
+
+/// What the manifest says about a file of the result.
+struct WrittenFile {
+    std::string name;  ///< within the result folder
+    std::string sha256;
+    std::uint64_t bytes = 0;
+    std::vector<std::size_t> shape;  ///< of arrays and images, rows first; else empty
+    std::string content;             ///< one line for people
+};
+
+/// Writes one new file. Not thread-safe. A full disk, a quota or a size limit is Error(out_of_resources); any other
+/// failure Error(bad_input) with the system's words.
+class FileSink {
+public:
+    explicit FileSink(const std::filesystem::path& file);
+    ~FileSink();
+    FileSink(const FileSink&) = delete;
+    FileSink& operator=(const FileSink&) = delete;
+
+    void write(std::span<const std::byte> bytes);
+    void write(std::string_view text) { write(std::as_bytes(std::span(text))); }
+
+    /// Flushes to the disk itself (fsync) and closes; name, digest and size of what was written.
+    WrittenFile finish();
+
+private:
+    void flush();
+
+    std::filesystem::path file_;
+    int descriptor_;
+    Digest digest_;
+    std::uint64_t bytes_ = 0;
+    std::vector<std::byte> pending_;  ///< small writes, collected
+};
+
+/// Error for the system's errno about `file`: its kind tells a full disk from other failures.
+[[noreturn]] void throw_system_error(const std::filesystem::path& file, int error);
+
+}  // namespace hairbake

@@ -1,0 +1,212 @@
+#include "core/output/manifest.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <system_error>
+#include <thread>
+
+#include "core/base/error.h"
+#include "core/output/map_files.h"
+#include "core/output/versions.h"
+#include "core/request_json.h"
+#include "core/request_keys.h"
+
+namespace hairbake {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* format_name = "hairbake result";
+
+template <class T>
+Json triple(const Vec3<T>& v) {
+    return {v.x, v.y, v.z};
+}
+
+Json stages(const BakeResult& result) {
+    Json block = Json::object();
+    if (result.transmittance)
+        block["transmittance"] = {{"key", result.transmittance_key}, {"algorithm", transmittance_algorithm}};
+    if (result.irradiance) block["irradiance"] = {{"key", result.irradiance_key}, {"algorithm", irradiance_algorithm}};
+    return block;
+}
+
+Json hair_input(const BakeResult& result) {
+    const HairFacts& facts = result.hair_facts;
+    return {{"sha256", result.hair_digest},
+            {"strands", facts.strands},
+            {"vertices", facts.vertices},
+            {"segments", facts.segments},
+            {"bounds", {triple(facts.bounds_min), triple(facts.bounds_max)}}};
+}
+
+Json environment_input(const BakeResult& result) {
+    const EnvironmentMap& map = *result.environment;
+    return {{"sha256", result.environment_digest},
+            {"width", map.width},
+            {"height", map.height},
+            {"format", map.source_format},
+            {"layout", map.layout},
+            {"latlong", std::string(name_of(map.latlong))},
+            {"primaries", map.primaries},
+            {"low_dynamic_range", map.low_dynamic_range},
+            {"energy", map.repairs.energy_total}};
+}
+
+Json inputs(const BakeResult& result) {
+    Json block = Json::object();
+    if (result.transmittance) block["hair"] = hair_input(result);
+    if (result.environment) block["environment"] = environment_input(result);
+    return block;
+}
+
+Json transmittance_facts(const Transmittance& transmittance) {
+    double sum = 0;
+    for (const float a : transmittance.average) sum += a;
+    const auto& average = transmittance.average;
+    const bool any = !average.empty();
+    return {{"vertices", average.size()},
+            {"directions", transmittance.directions},
+            {"voxel_size", transmittance.voxel_size},
+            {"occupied_voxels", transmittance.occupied_voxels},
+            {"mean", any ? Json(sum / static_cast<double>(average.size())) : Json()},
+            {"minimum", any ? Json(*std::min_element(average.begin(), average.end())) : Json()},
+            {"maximum", any ? Json(*std::max_element(average.begin(), average.end())) : Json()}};
+}
+
+Json error_bar(const ErrorBar& bar) {
+    return {{"rmse", bar.rmse},
+            {"bias", bar.bias},
+            {"ci95", {{"rmse", bar.rmse_ci95}, {"bias", bar.bias_ci95}}},
+            {"vertices", bar.vertices},
+            {"inside_strand", bar.inside_strand},
+            {"directions", bar.directions}};
+}
+
+Json map_statistics(const MapStatistics& statistics) {
+    return {{"mean", triple(statistics.mean)},
+            {"minimum", triple(statistics.minimum)},
+            {"maximum", triple(statistics.maximum)},
+            {"clamped_negative_mass", statistics.clamped_negative_mass}};
+}
+
+Json irradiance_facts(const IrradianceMaps& maps, const IrradianceSettings& settings) {
+    Json block{{"face_size", maps.face_size}, {"exponent", maps.exponent}};
+    block["diffuse"] = map_statistics(maps.diffuse_statistics);
+    block["specular"] = Json::array();
+    for (std::size_t m = 0; m < maps.specular.size(); ++m) {
+        Json map{{"theta_prime_deg", theta_prime_degrees(maps, m)}};
+        if (m < maps.specular_statistics.size()) map.update(map_statistics(maps.specular_statistics[m]));
+        block["specular"].push_back(map);
+    }
+    block["interpolation_bound"] = triple(maps.interpolation_bound);
+    block["interpolation_bound_relative"] = maps.interpolation_bound_relative;
+    block["environment_sh_bands"] = maps.environment_sh_bands;
+    if (settings.method == IrradianceMethod::sh) {
+        block["sh_bands"] = {{"diffuse", maps.sh_bands_diffuse}, {"specular", maps.sh_bands_specular}};
+        block["predicted_error"] = {{"diffuse", maps.predicted_error_diffuse},
+                                    {"specular", maps.predicted_error_specular}};
+    }
+    return block;
+}
+
+Json conventions() {
+    return {{"frame", "right-handed, Y up; lengths in the model's unit; radiance linear RGB"},
+            {"tangent", "root to tip; directions point away from the hair"},
+            {"theta_prime", "from the tangent; map m of M + 1 is for m * 180 / M degrees"},
+            {"cube_faces", "+X -X +Y -Y +Z -Z, OpenGL orientation, rows from the top"},
+            {"latlong", "files are gltf: row 0 is +Y, centre column +X, right of it +Z"},
+            {"vertices", "the hair file's point order"},
+            {"units", "maps: radiance times steradian, Kd and Ks not applied; transmittance: 0 to 1"}};
+}
+
+Json repairs(const BakeResult& result) {
+    Json block = Json::object();
+    if (result.transmittance) block["hair"] = {{"degenerate_segments", result.hair_facts.degenerate_segments}};
+    if (result.environment) {
+        const RadianceRepairs& done = result.environment->repairs;
+        block["environment"] = {{"negative_pixels", done.negative_pixels},
+                                {"nan_pixels", done.nan_pixels},
+                                {"infinite_pixels", done.infinite_pixels},
+                                {"energy_removed", done.energy_removed}};
+    }
+    return block;
+}
+
+Json versions() {
+    Json block{{"hairbake", version()}};
+    for (const auto& [name, number] : library_versions()) block[name] = number;
+    return block;
+}
+
+Json file_list(const std::vector<WrittenFile>& files) {
+    Json list = Json::array();
+    for (const WrittenFile& file : files) {
+        Json entry{{"name", file.name}, {"sha256", file.sha256}, {"bytes", file.bytes}};
+        if (!file.shape.empty()) entry["shape"] = file.shape;
+        entry["content"] = file.content;
+        list.push_back(entry);
+    }
+    return list;
+}
+
+Json measured(const BakeResult& result) {
+    Json block{{"about", "this block, timings_s and peak_memory_bytes differ between runs; nothing else does"},
+               {"threads", result.measured.threads},
+               {"processors", std::thread::hardware_concurrency()}};
+    const double seconds = result.measured.timings_s.at("transmittance");
+    if (result.transmittance && seconds > 0)
+        block["rays_per_second"] =
+            static_cast<double>(result.transmittance->average.size()) * result.transmittance->directions / seconds;
+    return block;
+}
+
+}  // namespace
+
+std::string make_manifest(const BakeResult& result, const std::vector<WrittenFile>& files) {
+    Json manifest{{"format", format_name}, {"format_version", output_format}, {"id", result.id}};
+    manifest["stages"] = stages(result);
+    manifest["request"] = Json::parse(to_json(result.request));
+    manifest["inputs"] = inputs(result);
+    if (result.transmittance) manifest["transmittance"] = transmittance_facts(*result.transmittance);
+    manifest["error_bar"] = result.error_bar ? error_bar(*result.error_bar) : Json();
+    if (result.irradiance) manifest["irradiance"] = irradiance_facts(*result.irradiance, result.request.irradiance);
+    manifest["conventions"] = conventions();
+    manifest["repairs"] = repairs(result);
+    manifest["warnings"] = result.warnings;
+    manifest["versions"] = versions();
+    manifest["files"] = file_list(files);
+    manifest["timings_s"] = result.measured.timings_s;
+    manifest["peak_memory_bytes"] = result.measured.peak_memory_bytes;
+    manifest["measured"] = measured(result);
+    return manifest.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void write_manifest(const BakeResult& result, const std::vector<WrittenFile>& files,
+                    const std::filesystem::path& folder) {
+    FileSink sink(folder / "manifest.json");
+    sink.write(make_manifest(result, files));
+    sink.finish();
+}
+
+std::vector<std::string> files_of_result(const std::filesystem::path& folder) {
+    const std::filesystem::path file = folder / "manifest.json";
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw Error(ErrorKind::bad_input, file.string() + ": " + std::generic_category().message(errno));
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    try {
+        const Json manifest = Json::parse(text);
+        if (manifest.at("format") != format_name)
+            throw Error(ErrorKind::bad_input, file.string() + " is not of hairbake");
+        std::vector<std::string> names;
+        for (const Json& entry : manifest.at("files")) names.push_back(entry.at("name").get<std::string>());
+        return names;
+    } catch (const Json::exception& error) {
+        throw Error(ErrorKind::bad_input, file.string() + " is not a manifest of hairbake: " + error.what());
+    }
+}
+
+}  // namespace hairbake

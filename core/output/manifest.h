@@ -1,0 +1,25 @@
+// manifest.json: what was baked, from what, how, and which files came of it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/bake_result.h"
+#include "core/output/file_sink.h"
+
+namespace hairbake {
+
+/// The manifest as JSON text. `timings_s`, `peak_memory_bytes` and the block `measured` differ between runs of the same
+/// request; everything else is the same bit for bit.
+std::string make_manifest(const BakeResult& result, const std::vector<WrittenFile>& files);
+
+/// Writes it to `folder`/manifest.json.
+void write_manifest(const BakeResult& result, const std::vector<WrittenFile>& files,
+                    const std::filesystem::path& folder);
+
+/// Names of the files that the manifest.json in `folder` lists. Throws Error(bad_input) when there is none of
+/// hairbake's.
+std::vector<std::string> files_of_result(const std::filesystem::path& folder);
+
+}  // namespace hairbake

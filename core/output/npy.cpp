@@ -1,0 +1,88 @@
+#include "core/output/npy.h"
+
+#include <bit>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <regex>
+#include <system_error>
+
+#include "core/base/error.h"
+
+namespace hairbake {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "npy data is written as it lies in memory");
+static_assert(sizeof(Vec3f) == 3 * sizeof(float));
+
+constexpr std::string_view magic{"\x93NUMPY\x01\x00", 8};
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& what) {
+    throw Error(ErrorKind::bad_input,
+                file.string() + " " + what + "; allowed is what hairbake writes: .npy version 1.0, '<f4', C order");
+}
+
+/// The header's dictionary; the stream is left at the data.
+std::string read_dictionary(std::ifstream& stream, const std::filesystem::path& file) {
+    char start[10];
+    if (!stream.read(start, sizeof start) || std::string_view(start, 8) != magic)
+        refuse(file, "is not .npy version 1.0");
+    const std::size_t length = static_cast<unsigned char>(start[8]) + 256u * static_cast<unsigned char>(start[9]);
+    std::string dictionary(length, ' ');
+    if (!stream.read(dictionary.data(), static_cast<std::streamsize>(length))) refuse(file, "ends within its header");
+    return dictionary;
+}
+
+std::vector<std::size_t> parse_shape(const std::string& dictionary, const std::filesystem::path& file) {
+    static const std::regex form(
+        R"(\{'descr': '<f4', 'fortran_order': False, 'shape': \(((?:[0-9]{1,12}, ?)*(?:[0-9]{1,12})?)\), \}\s*)");
+    std::smatch match;
+    if (!std::regex_match(dictionary, match, form)) refuse(file, "has the header " + dictionary.substr(0, 80));
+    std::vector<std::size_t> shape;
+    const std::string numbers = match[1];
+    static const std::regex number("[0-9]+");
+    for (std::sregex_iterator it(numbers.begin(), numbers.end(), number), end; it != end; ++it)
+        shape.push_back(std::stoull(it->str()));
+    return shape;
+}
+
+}  // namespace
+
+std::string npy_header(std::span<const std::size_t> shape) {
+    std::string text = "{'descr': '<f4', 'fortran_order': False, 'shape': (";
+    for (std::size_t i = 0; i < shape.size(); ++i)
+        text += std::to_string(shape[i]) + (i + 1 < shape.size() ? ", " : shape.size() == 1 ? "," : "");
+    text += "), }";
+    const std::size_t total = (magic.size() + 2 + text.size() + 1 + 63) / 64 * 64;
+    text.resize(total - magic.size() - 2 - 1, ' ');
+    text += '\n';
+    std::string header(magic);
+    header += static_cast<char>(text.size() & 255);
+    header += static_cast<char>(text.size() >> 8);
+    return header + text;
+}
+
+std::span<const std::byte> npy_data(std::span<const float> values) { return std::as_bytes(values); }
+std::span<const std::byte> npy_data(std::span<const Vec3f> values) { return std::as_bytes(values); }
+
+NpyArray read_npy(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw Error(ErrorKind::bad_input, file.string() + ": " + std::generic_category().message(errno));
+    NpyArray array;
+    array.shape = parse_shape(read_dictionary(stream, file), file);
+
+    const auto data = static_cast<std::uint64_t>(stream.tellg());
+    const std::uint64_t available = (std::filesystem::file_size(file) - data) / sizeof(float);
+    std::uint64_t count = 1;
+    for (const std::size_t n : array.shape) {
+        if (n != 0 && count > available / n) refuse(file, "holds fewer values than its shape says");
+        count *= n;
+    }
+    if (data + count * sizeof(float) != std::filesystem::file_size(file)) refuse(file, "is longer than its shape says");
+    array.values.resize(count);
+    if (!stream.read(reinterpret_cast<char*>(array.values.data()), static_cast<std::streamsize>(count * sizeof(float))))
+        refuse(file, "could not be read to its end");
+    return array;
+}
+
+}  // namespace hairbake

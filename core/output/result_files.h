@@ -1,0 +1,18 @@
+// Which files a result has.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "core/bake_result.h"
+#include "core/base/progress.h"
+#include "core/output/file_sink.h"
+
+namespace hairbake {
+
+/// Writes everything but the manifest into `folder`, which is empty: what request.outputs names of the stages that ran,
+/// environment_sh.json and preview.png. Adds what went less than well to result.warnings. Throws Error(cancelled)
+/// between files, and what FileSink throws.
+std::vector<WrittenFile> write_files(BakeResult& result, const std::filesystem::path& folder, Progress& progress);
+
+}  // namespace hairbake

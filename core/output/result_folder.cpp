@@ -1,0 +1,140 @@
+#include "core/output/result_folder.h"
+
+#include <fcntl.h>
+#include <stdio.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+
+#include "core/base/error.h"
+#include "core/output/file_sink.h"
+#include "core/output/manifest.h"
+
+namespace hairbake {
+namespace fs = std::filesystem;
+namespace {
+
+/// Absolute, links followed, without a slash at the end.
+fs::path resolved(const fs::path& folder) {
+    fs::path path = fs::weakly_canonical(fs::absolute(folder)).lexically_normal();
+    if (!path.has_filename()) path = path.parent_path();
+    return path;
+}
+
+[[noreturn]] void refuse(const fs::path& folder, const std::string& why) {
+    throw Error(
+        ErrorKind::usage,
+        folder.string() + " " + why + "; results go to a new or empty folder, or replace an earlier result of hairbake",
+        "out");
+}
+
+void sync_folder(const fs::path& folder) {
+    const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0) throw_system_error(folder, errno);
+    ::fsync(descriptor);
+    ::close(descriptor);
+}
+
+bool move(const fs::path& from, const fs::path& to, unsigned flags) {
+    return ::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), flags) == 0;
+}
+
+}  // namespace
+
+void check_result_folder(const fs::path& folder) {
+    std::error_code error;
+    const fs::file_status status = fs::status(folder, error);
+    if (status.type() == fs::file_type::not_found) return;
+    if (error) refuse(folder, "cannot be looked at: " + error.message());
+    if (!fs::is_directory(status)) refuse(folder, "is not a folder");
+    fs::directory_iterator entries(folder, error);
+    if (error) refuse(folder, "cannot be read: " + error.message());
+    if (entries == fs::directory_iterator()) return;
+
+    if (!fs::exists(folder / "manifest.json")) refuse(folder, "holds files and no manifest.json");
+    std::vector<std::string> known;
+    try {
+        known = files_of_result(folder);
+    } catch (const Error& unreadable) {
+        refuse(folder, std::string("holds a manifest.json that is not hairbake's (") + unreadable.what() + ")");
+    }
+    known.push_back("manifest.json");
+    for (const fs::directory_entry& entry : entries) {
+        const std::string name = entry.path().filename().string();
+        if (std::find(known.begin(), known.end(), name) == known.end())
+            refuse(folder, "holds " + name + ", which its manifest.json does not list");
+    }
+}
+
+fs::path staging_folder(const fs::path& folder) {
+    const fs::path path = resolved(folder);
+    std::string name = ".";
+    name.append(path.filename().string()).append(".hairbake-").append(std::to_string(::getpid()));
+    return path.parent_path() / name;
+}
+
+void discard_staging(const fs::path& folder) noexcept {
+    try {
+        // Moved away first, in one step: a commit that comes later finds nothing to move into place.
+        const fs::path staging = staging_folder(folder);
+        const fs::path gone = staging.string() + "-gone";
+        std::error_code error;
+        fs::rename(staging, gone, error);
+        if (!error) fs::remove_all(gone, error);
+    } catch (const std::exception&) {
+        // Nothing more can be done by a process that ends.
+    }
+}
+
+ResultFolder::ResultFolder(const fs::path& folder) : folder_(resolved(folder)), staging_(staging_folder(folder)) {
+    check_result_folder(folder_);
+    const fs::path parent = folder_.parent_path();
+    for (fs::path p = parent; !fs::exists(p) && p.has_relative_path(); p = p.parent_path()) made_parent_ = p;
+    std::error_code error;
+    fs::create_directories(parent, error);
+    if (error) throw_system_error(parent, error.value());
+    fs::remove_all(staging_, error);  // of an earlier process with this number
+    fs::create_directory(staging_, error);
+    if (error) throw_system_error(staging_, error.value());
+}
+
+ResultFolder::~ResultFolder() {
+    std::error_code ignored;
+    fs::remove_all(staging_, ignored);  // after a commit: the earlier result, if there was one
+    if (committed_ || made_parent_.empty()) return;
+    for (fs::path p = folder_.parent_path(); fs::remove(p, ignored) && p != made_parent_;) p = p.parent_path();
+}
+
+void ResultFolder::commit() {
+    sync_folder(staging_);
+    if (!move(staging_, folder_, RENAME_NOREPLACE)) {
+        if (errno != EEXIST && errno != EINVAL && errno != ENOSYS) throw_system_error(folder_, errno);
+        replace();
+    }
+    committed_ = true;
+    sync_folder(folder_.parent_path());
+}
+
+/// The folder is there: empty, or with an earlier result.
+void ResultFolder::replace() {
+    if (move(staging_, folder_, 0)) return;  // it was empty
+    if (errno != ENOTEMPTY && errno != EEXIST) throw_system_error(folder_, errno);
+    check_result_folder(folder_);  // again: a bake takes its time
+    if (move(staging_, folder_, RENAME_EXCHANGE)) return;
+    if (errno != EINVAL && errno != ENOSYS) throw_system_error(folder_, errno);
+
+    // A file system without exchange: the earlier result steps aside first.
+    const fs::path aside = staging_.string() + "-old";
+    if (!move(folder_, aside, 0)) throw_system_error(folder_, errno);
+    if (!move(staging_, folder_, 0)) {
+        const int error = errno;
+        move(aside, folder_, 0);
+        throw_system_error(folder_, error);
+    }
+    std::error_code ignored;
+    fs::remove_all(aside, ignored);
+}
+
+}  // namespace hairbake

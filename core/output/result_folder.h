@@ -1,0 +1,43 @@
+// A result folder that appears whole or not at all.
+#pragma once
+
+#include <filesystem>
+
+namespace hairbake {
+
+/// Throws Error(usage) when results may not go to `folder`: it is no folder, or holds files that are not those of an
+/// earlier result. Such a result (a manifest.json of hairbake and nothing that it does not list) may be replaced.
+void check_result_folder(const std::filesystem::path& folder);
+
+/// Where the files of `folder` are written before they are moved into place: a hidden folder beside it, named after
+/// it and this process.
+std::filesystem::path staging_folder(const std::filesystem::path& folder);
+
+/// Removes this process's staging folder for `folder`, if there is one; a ResultFolder at work on it fails to commit
+/// from then on. For a process that is about to end; may be called from another thread than the writer's.
+void discard_staging(const std::filesystem::path& folder) noexcept;
+
+/// Write files to path(), then commit(). Without commit() nothing remains.
+class ResultFolder {
+public:
+    /// Checks `folder` and makes the staging folder (and missing parents). Throws Error(usage), Error(bad_input) when
+    /// the place is not writable, Error(out_of_resources).
+    explicit ResultFolder(const std::filesystem::path& folder);
+    ~ResultFolder();
+    ResultFolder(const ResultFolder&) = delete;
+    ResultFolder& operator=(const ResultFolder&) = delete;
+
+    const std::filesystem::path& path() const { return staging_; }
+
+    /// Moves the files into place in one step of the file system; an earlier result gives way in the same step.
+    void commit();
+
+private:
+    void replace();
+
+    std::filesystem::path folder_, staging_;
+    std::filesystem::path made_parent_;  ///< topmost parent that was made here, or empty
+    bool committed_ = false;
+};
+
+}  // namespace hairbake

@@ -1,0 +1,34 @@
+#include "core/output/tone.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hairbake {
+namespace {
+
+/// Narkowicz's fit of the ACES film curve (2015): 0 to 0, 1 to 0.80, never above 1.
+double film(double x) { return std::clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0); }
+
+std::uint8_t to_srgb(double linear) {
+    const double encoded = linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+    return static_cast<std::uint8_t>(std::lround(255 * encoded));
+}
+
+}  // namespace
+
+double exposure_for(std::vector<float> luminances) {
+    if (luminances.empty()) return 0;
+    const auto tenth = luminances.end() - 1 - static_cast<std::ptrdiff_t>(luminances.size() / 10);
+    std::nth_element(luminances.begin(), tenth, luminances.end());
+    return *tenth > 0 ? std::log2(0.35 / *tenth) : 0;
+}
+
+float luminance(const Vec3f& rgb) { return 0.2126f * rgb.x + 0.7152f * rgb.y + 0.0722f * rgb.z; }
+
+Color tone(const Vec3f& rgb, double stops) {
+    const double scale = std::exp2(stops);
+    const auto channel = [scale](double value) { return to_srgb(film(std::max(0.0, value * scale))); };
+    return {channel(rgb.x), channel(rgb.y), channel(rgb.z)};
+}
+
+}  // namespace hairbake

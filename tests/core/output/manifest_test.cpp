@@ -1,0 +1,85 @@
+#include "core/output/manifest.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/request_json.h"
+#include "tests/core/output/small_result.h"
+#include "tests/support/temporary_folder.h"
+
+namespace hairbake {
+namespace {
+
+using Json = nlohmann::json;
+
+const std::vector<WrittenFile> files{{"a.npy", "12ab", 99, {2, 3}, "two by three"}, {"b.json", "cd", 1, {}, "text"}};
+
+TEST(Manifest, HoldsTheRequestAsRunTheInputsAndTheFiles) {
+    const BakeResult result = test_support::small_result();
+    const Json manifest = Json::parse(make_manifest(result, files));
+    EXPECT_EQ(manifest["request"], Json::parse(to_json(result.request)));
+    EXPECT_EQ(manifest["id"], "0123456789abcdef");
+    EXPECT_EQ(manifest["stages"]["transmittance"]["key"], "bb");
+    EXPECT_EQ(manifest["stages"]["irradiance"]["key"], "dd");
+    EXPECT_EQ(manifest["inputs"]["hair"]["sha256"], "aa");
+    EXPECT_EQ(manifest["inputs"]["hair"]["vertices"], 5);
+    EXPECT_EQ(manifest["inputs"]["environment"]["sha256"], "cc");
+    EXPECT_EQ(manifest["repairs"]["hair"]["degenerate_segments"], 1);
+    EXPECT_EQ(manifest["repairs"]["environment"]["negative_pixels"], 3);
+    EXPECT_EQ(manifest["warnings"], Json({"a warning with \"quotes\""}));
+    EXPECT_EQ(
+        manifest["files"][0],
+        Json({{"name", "a.npy"}, {"sha256", "12ab"}, {"bytes", 99}, {"shape", {2, 3}}, {"content", "two by three"}}));
+    for (const char* library : {"hairbake", "openvdb", "embree", "openimageio"})
+        EXPECT_TRUE(manifest["versions"].contains(library)) << library;
+    EXPECT_FALSE(manifest["conventions"].empty());
+}
+
+TEST(Manifest, HasTheErrorBarTheTimingsAndTheMemoryOnTop) {
+    BakeResult result = test_support::small_result();
+    result.measured.timings_s["transmittance"] = 0.5;
+    result.measured.peak_memory_bytes = 123;
+    result.measured.threads = 7;
+    const Json manifest = Json::parse(make_manifest(result, files));
+    const Json& bar = manifest["error_bar"];
+    EXPECT_EQ(bar["rmse"], 0.01);
+    EXPECT_EQ(bar["bias"], -0.001);
+    EXPECT_EQ(bar["ci95"]["rmse"], Json({0.008, 0.012}));
+    EXPECT_EQ(bar["ci95"]["bias"], Json({-0.002, 0.0}));
+    EXPECT_EQ(bar["vertices"], 4);
+    EXPECT_EQ(bar["inside_strand"], 1);
+    for (const char* stage : {"read_hair", "transmittance", "reference", "read_environment", "irradiance", "write"})
+        EXPECT_TRUE(manifest["timings_s"].contains(stage)) << stage;
+    EXPECT_EQ(manifest["timings_s"].size(), 6u);
+    EXPECT_EQ(manifest["peak_memory_bytes"], 123);
+    EXPECT_EQ(manifest["measured"]["threads"], 7);
+    EXPECT_EQ(manifest["measured"]["rays_per_second"], 5 * 100 / 0.5);  // vertices * directions / seconds
+}
+
+TEST(Manifest, LeavesOutAStageThatDidNotRun) {
+    BakeResult result = test_support::small_result();
+    result.transmittance.reset();
+    result.error_bar.reset();
+    const Json manifest = Json::parse(make_manifest(result, files));
+    EXPECT_TRUE(manifest["error_bar"].is_null());
+    EXPECT_FALSE(manifest.contains("transmittance"));
+    EXPECT_FALSE(manifest["stages"].contains("transmittance"));
+    EXPECT_FALSE(manifest["inputs"].contains("hair"));
+}
+
+TEST(Manifest, ListsItsFilesAndNothingElseIsTakenForOne) {
+    const test_support::TemporaryFolder folder;
+    write_manifest(test_support::small_result(), files, folder / "");
+    EXPECT_EQ(files_of_result(folder / ""), (std::vector<std::string>{"a.npy", "b.json"}));
+    for (const char* text : {"", "{}", "[]", "3", R"({"format": "other", "files": []})",
+                             R"({"format": "hairbake result", "files": [{}]})"}) {
+        std::ofstream(folder / "manifest.json") << text;
+        EXPECT_THROW(files_of_result(folder / ""), Error) << text;
+    }
+}
+
+}  // namespace
+}  // namespace hairbake
