@@ -9,7 +9,7 @@
 #include "core/base/progress.h"
 #include "core/hair/hair_model.h"
 #include "core/irradiance/irradiance_maps.h"
-#include "core/reference/tracer.h"
+#include "core/reference/error_bar.h"
 #include "core/request.h"
 #include "core/volume/transmittance.h"
 

@@ -53,14 +53,14 @@ void find_bounds(StrandGeometry& geometry) {
 void find_degenerate_segments(StrandGeometry& geometry) {
     const Vec3f side = geometry.bounds_max - geometry.bounds_min;
     const double shortest = 1e-6 * std::max({side.x, side.y, side.z});
-    geometry.segment_ok.assign(geometry.vertex_count(), 0);
+    geometry.segments.assign(geometry.vertex_count(), Segment::none);
     for (std::size_t s = 0; s < geometry.strand_count(); ++s)
         for (std::uint32_t i = geometry.strand_begin[s]; i + 1 < geometry.strand_begin[s + 1]; ++i) {
             const double segment_length = length(Vec3d(geometry.positions[i + 1]) - Vec3d(geometry.positions[i]));
-            const bool ok = segment_length > 0 && segment_length >= shortest;
-            geometry.segment_ok[i] = ok;
+            const bool solid = segment_length > 0 && segment_length >= shortest;
+            geometry.segments[i] = solid ? Segment::solid : Segment::degenerate;
             ++geometry.segment_count;
-            geometry.degenerate_segment_count += !ok;
+            geometry.degenerate_segment_count += !solid;
         }
 }
 

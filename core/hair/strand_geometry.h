@@ -9,15 +9,20 @@
 
 namespace hairbake {
 
-/// A strand segment joins vertex i and i + 1 of the same strand. `segment_ok[i]` says whether vertex i starts a
-/// segment that carries extinction: false for the last vertex of a strand and for zero-length or
-/// near-degenerate segments.
+/// What the segment from vertex i to i + 1 is.
+enum class Segment : std::uint8_t {
+    none,       ///< vertex i is the last of its strand: no segment starts there
+    solid,      ///< carries extinction
+    degenerate  ///< so short that it carries none; its two ends count as one point of the strand
+};
+
+/// Strands as polylines. Segment i joins the vertices i and i + 1 of one strand.
 struct StrandGeometry {
     std::vector<std::uint32_t> strand_begin;  ///< [S + 1], as in HairModel
     std::vector<Vec3f> positions;             ///< [V]
     std::vector<float> widths;                ///< [V], diameters > 0 in model units
     std::vector<float> opacities;             ///< [V], in [0, 1]
-    std::vector<std::uint8_t> segment_ok;     ///< [V]
+    std::vector<Segment> segments;            ///< [V]
 
     std::size_t segment_count = 0;             ///< segments of the model, degenerate ones included
     std::size_t degenerate_segment_count = 0;  ///< those of them that carry no extinction
@@ -26,6 +31,20 @@ struct StrandGeometry {
     std::size_t strand_count() const { return strand_begin.size() - 1; }
     std::size_t vertex_count() const { return positions.size(); }
 };
+
+/// The segments that touch vertex `v`, degenerate ones skipped over: all solid segments i with first <= i <= last.
+struct AdjacentSegments {
+    std::uint32_t first, last;
+    bool contains(std::uint32_t segment) const { return segment >= first && segment <= last; }
+};
+
+inline AdjacentSegments adjacent_segments(const StrandGeometry& strands, std::uint32_t v) {
+    std::uint32_t first = v, last = v;
+    while (first > 0 && strands.segments[first - 1] == Segment::degenerate) --first;
+    if (first > 0 && strands.segments[first - 1] == Segment::solid) --first;
+    while (strands.segments[last] == Segment::degenerate) ++last;
+    return {first, last};
+}
 
 /// Applies `settings` to `model`. A segment is degenerate when its length is zero or below 1e-6 of the longest side
 /// of the bounds.

@@ -1,0 +1,38 @@
+// The true strands as Embree curves.
+#pragma once
+
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/hair/strand_geometry.h"
+
+struct RTCDeviceTy;
+struct RTCSceneTy;
+
+namespace hairbake {
+
+/// Solid segments as Embree round linear curves (cones with rounded joints, thickness as diameter); degenerate segments
+/// are left out. Primitive k of geometry 0 is segment segment_of(k). Refers to `strands`, which must outlive it.
+/// Immutable after construction; may be traced from several threads.
+class StrandScene {
+public:
+    /// Throws Error(out_of_resources), Error(cancelled), Error(internal) with Embree's words.
+    StrandScene(const StrandGeometry& strands, Progress& progress);
+    ~StrandScene();
+    StrandScene(const StrandScene&) = delete;
+    StrandScene& operator=(const StrandScene&) = delete;
+
+    const StrandGeometry& strands() const { return strands_; }
+    RTCSceneTy* scene() const { return scene_; }
+    std::uint32_t segment_of(std::uint32_t primitive) const { return segment_of_[primitive]; }
+
+private:
+    void attach_curves();
+
+    const StrandGeometry& strands_;
+    std::vector<std::uint32_t> segment_of_;
+    RTCDeviceTy* device_ = nullptr;
+    RTCSceneTy* scene_ = nullptr;
+};
+
+}  // namespace hairbake

@@ -1,0 +1,57 @@
+#include "core/volume/grid_frame.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+
+namespace hairbake {
+namespace {
+
+/// 95th percentile of at most 65,536 widths taken at equal steps through the model.
+double typical_largest_width(const std::vector<float>& widths) {
+    const std::size_t step = widths.size() / 65536 + 1;
+    std::vector<float> sample;
+    for (std::size_t i = 0; i < widths.size(); i += step) sample.push_back(widths[i]);
+    const std::size_t rank = (sample.size() - 1) * 95 / 100;
+    std::nth_element(sample.begin(), sample.begin() + static_cast<std::ptrdiff_t>(rank), sample.end());
+    return sample[rank];
+}
+
+}  // namespace
+
+GridFrame make_grid_frame(const StrandGeometry& strands, const TransmittanceSettings& settings,
+                          bool* bounded_by_width) {
+    if (strands.vertex_count() >> 31)
+        throw Error(ErrorKind::out_of_resources, "the hair model has " + std::to_string(strands.vertex_count()) +
+                                                     " vertices; the volume method takes fewer than 2147483648");
+    const Vec3d side = Vec3d(strands.bounds_max) - Vec3d(strands.bounds_min);
+    const double longest = std::max({side.x, side.y, side.z});
+    const double asked = settings.voxel_size.value_or(longest / settings.voxels);
+    const double least = 2 * typical_largest_width(strands.widths);
+    GridFrame frame;
+    frame.voxel_size = std::max(asked, least);
+    *bounded_by_width = least > asked;
+    if (!(frame.voxel_size > 1e-30 && frame.voxel_size < 1e30))
+        throw Error(ErrorKind::bad_input, "the hair model is " + std::to_string(longest) +
+                                              " units large, which makes voxels of " +
+                                              std::to_string(frame.voxel_size) + "; allowed are 1e-30 to 1e30");
+    // 1,024 voxels and a rounding error of the division above.
+    if (longest / frame.voxel_size > 1024.5)
+        throw Error(ErrorKind::usage,
+                    "transmittance.voxel_size is " + std::to_string(asked) + ", which makes " +
+                        std::to_string(longest / frame.voxel_size) +
+                        " voxels on the longest axis; allowed are at most 1024",
+                    "transmittance.voxel_size");
+    frame.origin = strands.bounds_min - Vec3f(static_cast<float>(frame.voxel_size));
+    for (int axis = 0; axis < 3; ++axis) {
+        // One voxel of margin below, one above, and one for the last vertex, which lies on a voxel's upper face.
+        const int voxels = static_cast<int>(side[axis] / frame.voxel_size) + 3;
+        frame.bricks[static_cast<std::size_t>(axis)] = (voxels + 7) / 8;
+    }
+    return frame;
+}
+
+}  // namespace hairbake

@@ -1,0 +1,55 @@
+// Where the voxels lie: the map between model space and grid space.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/base/vec.h"
+#include "core/hair/strand_geometry.h"
+#include "core/volume/transmittance.h"
+
+namespace hairbake {
+
+/// Grid space has its origin at `origin`, one voxel per unit, and the model's axes. Voxel (i, j, k) covers [i, i+1) x
+/// [j, j+1) x [k, k+1). Bricks are blocks of 8^3 voxels, the leaves of OpenVDB.
+struct GridFrame {
+    static constexpr int brick_side = 8;
+
+    Vec3f origin;               ///< model space
+    double voxel_size = 1;      ///< h, model units
+    std::array<int, 3> bricks;  ///< per axis
+
+    Vec3f to_grid(const Vec3f& p) const { return (p - origin) * static_cast<float>(1 / voxel_size); }
+    int voxels(int axis) const { return bricks[axis] * brick_side; }
+    std::uint32_t brick_count() const {
+        return static_cast<std::uint32_t>(bricks[0]) * static_cast<std::uint32_t>(bricks[1]) *
+               static_cast<std::uint32_t>(bricks[2]);
+    }
+    /// Linear index of the brick that holds voxel (i, j, k).
+    std::uint32_t brick_of(int i, int j, int k) const {
+        return (static_cast<std::uint32_t>(i >> 3) * static_cast<std::uint32_t>(bricks[1]) +
+                static_cast<std::uint32_t>(j >> 3)) *
+                   static_cast<std::uint32_t>(bricks[2]) +
+               static_cast<std::uint32_t>(k >> 3);
+    }
+    /// Linear index of the brick that holds grid position g.
+    std::uint32_t brick_at(const Vec3f& g) const {
+        return brick_of(static_cast<int>(g.x), static_cast<int>(g.y), static_cast<int>(g.z));
+    }
+    /// Brick coordinates of a linear brick index.
+    std::array<int, 3> brick_coordinates(std::uint32_t linear) const {
+        const auto ny = static_cast<std::uint32_t>(bricks[1]), nz = static_cast<std::uint32_t>(bricks[2]);
+        return {static_cast<int>(linear / (ny * nz)), static_cast<int>(linear / nz % ny),
+                static_cast<int>(linear % nz)};
+    }
+    /// Position of voxel (i, j, k) inside its brick, as in an OpenVDB leaf: z fastest.
+    static int voxel_in_brick(int i, int j, int k) { return (i & 7) << 6 | (j & 7) << 3 | (k & 7); }
+};
+
+/// The grid that `settings` asks for around all strands, with a margin of one voxel. The mean field needs strands well
+/// thinner than a voxel: h = max(what was asked for, 2 * 95th percentile of the widths).
+/// `bounded_by_width` tells that the widths decided. Throws Error(usage) when voxel_size asks for more than 1,024
+/// voxels on the longest axis.
+GridFrame make_grid_frame(const StrandGeometry& strands, const TransmittanceSettings& settings, bool* bounded_by_width);
+
+}  // namespace hairbake
