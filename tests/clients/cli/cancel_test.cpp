@@ -1,0 +1,88 @@
+// Signals sent to the real program in the middle of a bake.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <thread>
+
+#include "tests/clients/cli/cli.h"
+
+namespace hairbake::test_support {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Starts the program with its output thrown away.
+pid_t start(const std::string& arguments) {
+    const std::string command = "exec " + shell_word(HAIRBAKE_PROGRAM) + " " + arguments + " >/dev/null 2>&1";
+    const pid_t child = ::fork();
+    if (child == 0) {
+        ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+        ::_exit(127);
+    }
+    return child;
+}
+
+struct Ended {
+    int exit_code;
+    double seconds;
+};
+
+/// Sends the signal and waits; `seconds` is the time from the signal to the end.
+Ended stop(pid_t child, int signal_number) {
+    const auto sent = Clock::now();
+    ::kill(child, signal_number);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
+            std::chrono::duration<double>(Clock::now() - sent).count()};
+}
+
+class Cancel : public testing::TestWithParam<std::pair<int, int>> {};
+
+// A traced bake of this size takes minutes, so the signal comes in the middle of it whatever the delay.
+TEST_P(Cancel, EndsTheBakeSoonWithFiveAndLeavesNothing) {
+    const auto [signal_number, delay_ms] = GetParam();
+    const Workshop workshop;
+    ASSERT_EQ(hairbake("sample " + workshop.path("samples") + " --vertices 300000 --map-width 64").exit_code, 0);
+    const pid_t child = start("bake" + workshop.hair() + workshop.env() + workshop.out() +
+                              " --directions 4096 --set transmittance.method=trace");
+    std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms));
+    const Ended ended = stop(child, signal_number);
+    EXPECT_EQ(ended.exit_code, 5);
+    RecordProperty("seconds", std::to_string(ended.seconds));
+    std::printf("ended %.2f s after the signal\n", ended.seconds);
+    EXPECT_LT(ended.seconds, 10) << "a second is promised; the rest is for a machine under load";
+    EXPECT_EQ(workshop.names(), std::vector<std::string>{"samples"});
+}
+
+INSTANTIATE_TEST_SUITE_P(Signals, Cancel,
+                         testing::Values(std::pair(SIGINT, 1000), std::pair(SIGTERM, 1000), std::pair(SIGINT, 300)));
+
+TEST(CancelWhileWriting, LeavesTheEarlierResultAlone) {
+    const Workshop workshop;
+    ASSERT_EQ(hairbake("bake" + workshop.env() + workshop.out() + " --preset draft").exit_code, 0);
+    const auto before = json_of(workshop.path("out/manifest.json"))["id"];
+    // 257 maps of 64x64x6 as EXR take seconds to write; the staging folder shows that writing has begun.
+    const pid_t child = start("bake" + workshop.env() + workshop.out() + " --face-size 64 --specular-maps 257");
+    while (workshop.names().size() < 3) {
+        ASSERT_EQ(::waitpid(child, nullptr, WNOHANG), 0) << "the bake ended before it wrote";
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    EXPECT_EQ(stop(child, SIGINT).exit_code, 5);
+    EXPECT_EQ(workshop.names(), (std::vector<std::string>{"out", "samples"}));
+    EXPECT_EQ(json_of(workshop.path("out/manifest.json"))["id"], before);
+}
+
+TEST(CancelIgnoredSignal, AnIgnoredSigintOfABackgroundJobStillStopsTheBake) {
+    const Workshop workshop;
+    const Finished run =
+        run_program("trap '' INT; " + shell_word(HAIRBAKE_PROGRAM) + " bake" + workshop.hair() + workshop.out() +
+                    " --directions 4096 --voxels 1024 --width 0.001 & pid=$!; sleep 0.4; kill -INT $pid; wait $pid");
+    EXPECT_EQ(run.exit_code, 5) << run.output;
+}
+
+}  // namespace
+}  // namespace hairbake::test_support
