@@ -24,15 +24,17 @@ Legendre legendre(int degree, double x) {
 
 Quadrature gauss_legendre(int count) {
     Quadrature rule{std::vector<double>(count), std::vector<double>(count)};
-    for (int i = 0; i < count; ++i) {
-        double x = -std::cos(std::numbers::pi * (i + 0.75) / (count + 0.5));
-        for (int step = 0; step < 8; ++step) {
+    for (int i = 0; i < (count + 1) / 2; ++i) {
+        double x = -std::cos(std::numbers::pi * (i + 0.75) / (count + 0.5)), step = 1;
+        for (int k = 0; k < 10 && std::abs(step) > 1e-15; ++k) {
             const Legendre p = legendre(count, x);
-            x -= p.value / p.slope;
+            step = p.value / p.slope;
+            x -= step;
         }
         const double slope = legendre(count, x).slope;
         rule.nodes[i] = x;
-        rule.weights[i] = 2 / ((1 - x * x) * slope * slope);
+        rule.nodes[count - 1 - i] = -x;  // symmetric; the middle one of an odd count is 0
+        rule.weights[i] = rule.weights[count - 1 - i] = 2 / ((1 - x * x) * slope * slope);
     }
     return rule;
 }

@@ -23,7 +23,7 @@ enum class LatLong {
 
 enum class InvalidRadiance {
     reject,  ///< a negative, infinite or NaN pixel is an error naming it
-    clamp    ///< negative and NaN become 0, +infinity the largest finite value of the map; counted
+    clamp    ///< negative and NaN become 0, +infinity the largest finite value of the map; counted (-infinity: 0)
 };
 
 /// The request's fields that say how an environment is read.
@@ -36,7 +36,8 @@ struct EnvironmentSettings {
     InvalidRadiance invalid_radiance = InvalidRadiance::reject;
 };
 
-/// What was found wrong in the pixels and what the policy did about it; goes to the manifest.
+/// What was found wrong in the pixels and what the policy did about it; goes to the manifest. Energies are in the
+/// file's own unit (radiance times steradian), before exposure and tint.
 struct RadianceRepairs {
     std::uint64_t negative_pixels = 0, nan_pixels = 0, infinite_pixels = 0;
     double energy_removed = 0;  ///< sum over clamped negative values of |value| * solid angle, all channels

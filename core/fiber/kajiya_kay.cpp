@@ -42,7 +42,7 @@ std::vector<double> specular_zonal(int bands, double exponent, double theta_view
     const double low = std::max(0.0, pi - theta_view - reach), high = std::min(pi, pi - theta_view + reach);
     std::vector<double> lambda(bands, 0.0);
     if (high <= low) return lambda;
-    const Quadrature rule = gauss_legendre(512);
+    const Quadrature rule = gauss_legendre(256);
     for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
         const double theta = 0.5 * (low + high) + 0.5 * (high - low) * rule.nodes[i];
         const double weight =

@@ -30,8 +30,8 @@ double specular_lobe(double cosine, double exponent);
 std::vector<double> diffuse_zonal(int bands);
 
 /// lambda_l = 2 pi * integral over x of max(0, cos(pi - acos(x) - theta_view))^p P_l(x), l = 0 .. bands - 1.
-/// Gauss-Legendre on the part of the support where the kernel exceeds 1e-20 of its peak, 512 nodes: error below 1e-12
-/// for integer p, below 1e-6 for the endpoint singularity of other p < 2. Exponent in [0, 8192], bands up to 256.
+/// Gauss-Legendre on the part of the support where the kernel exceeds 1e-20 of its peak, 256 nodes: error below 1e-12
+/// for integer p, below 1e-5 for the endpoint singularity of other p < 2. Exponent in [0, 8192], bands up to 128.
 std::vector<double> specular_zonal(int bands, double exponent, double theta_view);
 
 /// Integral of the squared kernel over the sphere; equals the sum over l of lambda_l^2 (2l + 1) / (4 pi).

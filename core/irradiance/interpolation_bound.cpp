@@ -56,22 +56,23 @@ std::vector<Vec3d> half_of_the_cube() {
 
 }  // namespace
 
-Vec3d interpolation_bound(const LightSet& lights, double exponent, int specular_maps, const Progress& progress) {
-    const AngleGrid grid(1024);
+double texel_radius(int face_size) { return std::numbers::sqrt2 / face_size; }
+
+void add_interpolation_rows(KernelTable& table, double exponent, int specular_maps, double radius) {
     const double spacing = pi / (specular_maps - 1);
-    const double texel_radius =
-        std::numbers::sqrt2 / tangent_size;  // half diagonal at a face's centre, where it is largest
-    const double reach = texel_radius + lights.radius + grid.largest_step();
-    const std::vector<double> worst = widened(worst_error_by_sum(exponent, spacing), reach);
-    KernelTable table(grid);
+    std::vector<double> worst = widened(worst_error_by_sum(exponent, spacing), radius + table.grid().largest_step());
+    for (double& value : worst) value *= 1.02;
     for (int m = 0; m + 1 < specular_maps; ++m)
         table.add_row([&](double theta) { return worst[std::lround((theta + m * spacing) / sample_step)]; });
-    // The opposite tangent swaps theta for pi - theta, which turns interval m into interval M - 1 - m: covered.
-    const std::vector<Vec3f> sums = sum_kernels(lights, half_of_the_cube(), table, progress);
+}
+
+Vec3d interpolation_bound(const LightSet& lights, double exponent, int specular_maps, const Progress& progress) {
+    KernelTable table(AngleGrid(1024));
+    add_interpolation_rows(table, exponent, specular_maps, texel_radius(tangent_size) + lights.radius);
     Vec3d bound;
-    for (const Vec3f& sum : sums)
+    for (const Vec3f& sum : sum_kernels(lights, half_of_the_cube(), table, progress))
         for (int channel = 0; channel < 3; ++channel) bound[channel] = std::max(bound[channel], double(sum[channel]));
-    return bound * 1.02;
+    return bound;
 }
 
 }  // namespace hairbake

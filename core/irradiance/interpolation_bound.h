@@ -4,17 +4,26 @@
 #include "core/base/progress.h"
 #include "core/base/vec.h"
 #include "core/environment/light_set.h"
+#include "core/irradiance/kernel_sum.h"
 
 namespace hairbake {
 
-/// Upper bound, per channel, of |(1 - f) S_m(t) + f S_m+1(t) - S(t, theta')| over every tangent t and every theta'
-/// between theta'_m and theta'_m+1, for the environment whose texels `lights` gathers; unit of the maps.
+/// Adds specular_maps - 1 rows to `table`: row m bounds, for one light at angle theta to the tangent t of a texel, the
+/// error of interpolating between maps m and m + 1 at any theta' between them, for every tangent within `radius`
+/// (radians) of t and of the light. So the largest sum of such a row over the lights, over rows and tangents that cover
+/// half the sphere with that radius, is an upper bound, per channel, of |(1 - f) S_m(t) + f S_m+1(t) - S(t, theta')|
+/// for the texels the lights gather.
 ///
-/// How: for one light at angle theta the error is e(theta + theta', f), so the error at t is at most the sum over
-/// texels of flux * max over f of |e|. That sum is taken over 768 tangents (half of a 16 x 16 x 6 cube) and the kernel
-/// is replaced by its maximum over all angles within (half diagonal of such a texel + radius of the light set + one
-/// table step), so that it covers every tangent and every texel, not only those looked at. 2 % are added for the finite
-/// sampling of e. The bound adds absolute values and is therefore loose for smooth environments, close for a sun.
+/// How: one light's error depends on theta + theta'_m and f alone; its absolute value is maximised over f and over
+/// angles within `radius` and one table step. 2 % are added for the finite sampling. Absolute values add up, so the
+/// bound is loose for smooth environments and close for a sun. The opposite tangents swap theta for pi - theta, which
+/// turns row m into row M - 1 - m: half the sphere is enough.
+void add_interpolation_rows(KernelTable& table, double exponent, int specular_maps, double radius);
+
+/// Largest angle between a direction and the nearest texel centre of a cube: half a diagonal at a face's centre.
+double texel_radius(int face_size);
+
+/// The bound over the tangents of a 16 x 16 x 6 cube, computed by itself. Per channel, unit of the maps.
 Vec3d interpolation_bound(const LightSet& lights, double exponent, int specular_maps, const Progress& progress);
 
 }  // namespace hairbake

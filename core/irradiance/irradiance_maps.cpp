@@ -40,26 +40,37 @@ KernelTable kajiya_kay_table(double exponent, int specular_maps) {
     return table;
 }
 
-// Sums over the lights for the tangents of faces +X, +Y and +Z only: D(-t) = D(t) and S_m(-t) = S_M-m(t) give the rest.
+// One texel of every map and its opposite: D(-t) = D(t) and S_m(-t) = S_M-m(t).
+void store_texel(const Vec3f* sums, std::size_t texel, IrradianceMaps& maps) {
+    const std::size_t opposite = cube_antipode(maps.face_size, texel), last = maps.specular.size() - 1;
+    maps.diffuse[texel] = maps.diffuse[opposite] = sums[0];
+    for (std::size_t m = 0; m <= last; ++m) maps.specular[m][texel] = maps.specular[last - m][opposite] = sums[1 + m];
+}
+
+// Sums over the lights for the tangents of faces +X, +Y and +Z, and the bound of interpolation by the way: cubes
+// coarser than 16 would make it needlessly loose and have it computed by itself.
 void bake_exact_maps(const LightSet& lights, const IrradianceSettings& settings, const Progress& progress,
                      IrradianceMaps& maps) {
     const int n = maps.face_size, count = settings.specular_maps;
-    const KernelTable table = kajiya_kay_table(settings.exponent, count);
+    KernelTable table = kajiya_kay_table(settings.exponent, count);
+    if (n >= 16) add_interpolation_rows(table, settings.exponent, count, texel_radius(n) + lights.radius);
     const std::size_t texels = std::size_t(n) * n;
     maps.diffuse.assign(cube_faces * texels, {});
     maps.specular.assign(count, CubeTexels(cube_faces * texels));
     std::vector<Vec3d> tangents(texels);
+    Vec3d bound;
     for (const int face : {0, 2, 4}) {
         for (std::size_t i = 0; i < texels; ++i) tangents[i] = cube_texel_direction(n, face, int(i / n), int(i % n));
         const std::vector<Vec3f> sums = sum_kernels(lights, tangents, table, progress);
         for (std::size_t i = 0; i < texels; ++i) {
-            const std::size_t texel = face * texels + i, opposite = cube_antipode(n, texel);
             const Vec3f* row = sums.data() + i * table.rows();
-            maps.diffuse[texel] = maps.diffuse[opposite] = row[0];
-            for (int m = 0; m < count; ++m)
-                maps.specular[m][texel] = maps.specular[count - 1 - m][opposite] = row[1 + m];
+            store_texel(row, face * texels + i, maps);
+            for (int k = 1 + count; k < table.rows(); ++k)
+                for (int channel = 0; channel < 3; ++channel)
+                    bound[channel] = std::max(bound[channel], double(row[k][channel]));
         }
     }
+    maps.interpolation_bound = n >= 16 ? bound : interpolation_bound(lights, settings.exponent, count, progress);
 }
 
 void measure(const CubeTexels& texels, const std::vector<double>& solid_angles, MapStatistics& statistics) {
@@ -67,6 +78,11 @@ void measure(const CubeTexels& texels, const std::vector<double>& solid_angles, 
     Vec3d sum;
     for (std::size_t i = 0; i < texels.size(); ++i) {
         sum += Vec3d(texels[i]) * solid_angles[i % solid_angles.size()];
+        if (!is_finite(texels[i]))
+            throw Error(ErrorKind::bad_input,
+                        "the environment is so bright that a map leaves the range of single precision (3.4e38); lower "
+                        "irradiance.exposure_stops",
+                        "irradiance.exposure_stops");
         for (int channel = 0; channel < 3; ++channel) {
             statistics.minimum[channel] = std::min(statistics.minimum[channel], texels[i][channel]);
             statistics.maximum[channel] = std::max(statistics.maximum[channel], texels[i][channel]);
@@ -149,14 +165,13 @@ IrradianceMaps bake_irradiance(const EnvironmentMap& environment, const Irradian
     progress.report("irradiance", 0);
     const LightSet lights = make_light_set(environment, exact ? light_resolution(settings.exponent) : 32, progress);
     progress.report("irradiance", 0.2);
-    maps.interpolation_bound = interpolation_bound(lights, settings.exponent, settings.specular_maps, progress);
-    progress.report("irradiance", 0.4);
     if (exact) {
         bake_exact_maps(lights, settings, progress, maps);
         maps.environment_sh_bands = reported_bands;
         maps.environment_sh =
             rotate_sh(project_sh(environment, reported_bands, progress), reported_bands, map_to_world(environment));
     } else {
+        maps.interpolation_bound = interpolation_bound(lights, settings.exponent, settings.specular_maps, progress);
         bake_sh_maps(environment, settings, reported_bands, progress, maps);
     }
     measure_all(maps);

@@ -7,6 +7,7 @@
 
 #include "core/base/direction_set.h"
 #include "core/base/random.h"
+#include "core/reference/nearest_strand.h"
 #include "core/reference/tracer.h"
 
 namespace hairbake {
@@ -26,7 +27,7 @@ std::vector<std::uint32_t> draw_vertices(std::size_t vertex_count, std::size_t c
 
 /// Removes the vertices inside another strand; returns how many.
 std::uint32_t drop_inside(const StrandScene& scene, std::vector<std::uint32_t>& vertices) {
-    const std::vector<float> distance = distance_to_other_strands(scene, vertices, 1);
+    const std::vector<float> distance = distance_to_other_strands(scene.strands(), vertices, 1);
     std::vector<std::uint32_t> outside;
     for (std::size_t k = 0; k < vertices.size(); ++k)
         if (distance[k] >= 0) outside.push_back(vertices[k]);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -124,32 +125,6 @@ void trace_packet(const StrandScene& scene, std::span<const std::uint32_t> verti
     for (unsigned i = 0; i < vertices.size(); ++i) out[i] = static_cast<float>(sum[i] / double(directions.size()));
 }
 
-/// Distance from p to the surface of a segment (its axis distance less the radius at the foot point).
-float surface_distance(const StrandGeometry& strands, std::uint32_t segment, const Vec3f& p) {
-    const Vec3f a = strands.positions[segment], axis = strands.positions[segment + 1] - a;
-    const float s = std::clamp(dot(p - a, axis) / dot(axis, axis), 0.0f, 1.0f);
-    const float radius = 0.5f * ((1 - s) * strands.widths[segment] + s * strands.widths[segment + 1]);
-    return length(p - (a + s * axis)) - radius;
-}
-
-struct NearestQuery {
-    const StrandScene* scene;
-    Vec3f position;
-    AdjacentSegments own;
-    float nearest;
-};
-
-bool visit(RTCPointQueryFunctionArguments* arguments) {
-    auto& query = *static_cast<NearestQuery*>(arguments->userPtr);
-    const std::uint32_t segment = query.scene->segment_of(arguments->primID);
-    if (query.own.contains(segment)) return false;
-    const float distance = surface_distance(query.scene->strands(), segment, query.position);
-    if (distance >= query.nearest) return false;
-    query.nearest = distance;
-    arguments->query->radius = std::max(0.0f, distance);
-    return true;
-}
-
 }  // namespace
 
 std::vector<float> trace_transmittance(const StrandScene& scene, std::span<const std::uint32_t> vertices,
@@ -166,25 +141,6 @@ std::vector<float> trace_transmittance(const StrandScene& scene, std::span<const
         progress.report("reference", 0.5 + 0.5 * double(done += count) / double(vertices.size()));
     });
     return average;
-}
-
-std::vector<float> distance_to_other_strands(const StrandScene& scene, std::span<const std::uint32_t> vertices,
-                                             float limit) {
-    const StrandGeometry& strands = scene.strands();
-    std::vector<float> distances(vertices.size());
-    parallel_for(vertices.size(), 64, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) {
-            const std::uint32_t v = vertices[k];
-            const float width = strands.widths[v];
-            NearestQuery query{&scene, strands.positions[v], adjacent_segments(strands, v), limit * width};
-            RTCPointQueryContext context;
-            rtcInitPointQueryContext(&context);
-            RTCPointQuery point{query.position.x, query.position.y, query.position.z, 0, limit * width};
-            rtcPointQuery(scene.scene(), &point, &context, visit, &query);
-            distances[k] = query.nearest / width;
-        }
-    });
-    return distances;
 }
 
 }  // namespace hairbake

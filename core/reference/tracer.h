@@ -18,9 +18,4 @@ namespace hairbake {
 std::vector<float> trace_transmittance(const StrandScene& scene, std::span<const std::uint32_t> vertices,
                                        std::span<const Vec3d> directions, Progress& progress);
 
-/// For each of `vertices`: distance from the vertex to the surface of the nearest segment that is not adjacent to
-/// it, in units of the vertex's width; negative inside another strand, at most `limit`.
-std::vector<float> distance_to_other_strands(const StrandScene& scene, std::span<const std::uint32_t> vertices,
-                                             float limit);
-
 }  // namespace hairbake

@@ -5,8 +5,6 @@
 #include <vector>
 
 #include "core/base/progress.h"
-#include "core/hair/strand_geometry.h"
-#include "core/volume/grid_frame.h"
 #include "core/volume/strand_pieces.h"
 
 namespace hairbake {
@@ -28,7 +26,6 @@ struct ExtinctionBricks {
 };
 
 /// Deposits every piece into the voxel of its centre. Throws Error(out_of_resources), Error(cancelled).
-ExtinctionBricks deposit_strands(const StrandGeometry& strands, const GridFrame& frame, const SortedStrands& sorted,
-                                 Progress& progress);
+ExtinctionBricks deposit_strands(const SortedStrands& sorted, Progress& progress);
 
 }  // namespace hairbake

@@ -24,6 +24,9 @@ double typical_largest_width(const std::vector<float>& widths) {
 
 GridFrame make_grid_frame(const StrandGeometry& strands, const TransmittanceSettings& settings,
                           bool* bounded_by_width) {
+    if (strands.vertex_count() >> 31)
+        throw Error(ErrorKind::out_of_resources, "the hair model has " + std::to_string(strands.vertex_count()) +
+                                                     " vertices; the volume method takes fewer than 2147483648");
     const Vec3d side = Vec3d(strands.bounds_max) - Vec3d(strands.bounds_min);
     const double longest = std::max({side.x, side.y, side.z});
     const double asked = settings.voxel_size.value_or(longest / settings.voxels);
@@ -31,6 +34,10 @@ GridFrame make_grid_frame(const StrandGeometry& strands, const TransmittanceSett
     GridFrame frame;
     frame.voxel_size = std::max(asked, least);
     *bounded_by_width = least > asked;
+    if (!(frame.voxel_size > 1e-30 && frame.voxel_size < 1e30))
+        throw Error(ErrorKind::bad_input, "the hair model is " + std::to_string(longest) +
+                                              " units large, which makes voxels of " +
+                                              std::to_string(frame.voxel_size) + "; allowed are 1e-30 to 1e30");
     // 1,024 voxels and a rounding error of the division above.
     if (longest / frame.voxel_size > 1024.5)
         throw Error(ErrorKind::usage,

@@ -32,6 +32,16 @@ struct GridFrame {
                    static_cast<std::uint32_t>(bricks[2]) +
                static_cast<std::uint32_t>(k >> 3);
     }
+    /// Linear index of the brick that holds grid position g.
+    std::uint32_t brick_at(const Vec3f& g) const {
+        return brick_of(static_cast<int>(g.x), static_cast<int>(g.y), static_cast<int>(g.z));
+    }
+    /// Brick coordinates of a linear brick index.
+    std::array<int, 3> brick_coordinates(std::uint32_t linear) const {
+        const auto ny = static_cast<std::uint32_t>(bricks[1]), nz = static_cast<std::uint32_t>(bricks[2]);
+        return {static_cast<int>(linear / (ny * nz)), static_cast<int>(linear / nz % ny),
+                static_cast<int>(linear % nz)};
+    }
     /// Position of voxel (i, j, k) inside its brick, as in an OpenVDB leaf: z fastest.
     static int voxel_in_brick(int i, int j, int k) { return (i & 7) << 6 | (j & 7) << 3 | (k & 7); }
 };
@@ -40,7 +50,6 @@ struct GridFrame {
 /// thinner than a voxel: h = max(what was asked for, 2 * 95th percentile of the widths).
 /// `bounded_by_width` tells that the widths decided. Throws Error(usage) when voxel_size asks for more than 1,024
 /// voxels on the longest axis.
-GridFrame make_grid_frame(const StrandGeometry& strands, const TransmittanceSettings& settings,
-                          bool* bounded_by_width);
+GridFrame make_grid_frame(const StrandGeometry& strands, const TransmittanceSettings& settings, bool* bounded_by_width);
 
 }  // namespace hairbake

@@ -11,10 +11,8 @@ constexpr std::uint32_t kPad = 16;
 
 /// First voxel of brick number `slot`.
 std::array<int, 3> first_voxel(const GridFrame& frame, const SortedStrands& sorted, std::size_t slot) {
-    const std::uint32_t linear = sorted.bricks[slot];
-    const auto nz = static_cast<std::uint32_t>(frame.bricks[2]), ny = static_cast<std::uint32_t>(frame.bricks[1]);
-    return {static_cast<int>(8 * (linear / (ny * nz))), static_cast<int>(8 * (linear / nz % ny)),
-            static_cast<int>(8 * (linear % nz))};
+    const std::array<int, 3> brick = frame.brick_coordinates(sorted.bricks[slot]);
+    return {8 * brick[0], 8 * brick[1], 8 * brick[2]};
 }
 
 /// Where each brick's eight slices go: number of the tile that holds slice k of the brick.
@@ -60,8 +58,9 @@ void copy_tensors(const ExtinctionBricks& bricks, const std::vector<std::array<s
             for (std::size_t k = 0; k < 8; ++k)
                 for (int c = 0; c < ExtinctionBricks::components; ++c) {
                     const std::uint16_t* from = bricks.component(b, c) + k * stride_s;
-                    std::uint16_t* to =
-                        &layout.tensors[(tile_of[b][k] * std::size_t{ExtinctionBricks::components} + static_cast<std::size_t>(c)) * SliceLayout::tile_texels];
+                    std::uint16_t* to = &layout.tensors[(tile_of[b][k] * std::size_t{ExtinctionBricks::components} +
+                                                         static_cast<std::size_t>(c)) *
+                                                        SliceLayout::tile_texels];
                     for (std::size_t v = 0; v < 8; ++v)
                         for (std::size_t u = 0; u < 8; ++u) to[8 * v + u] = from[v * stride_v + u * stride_u];
                 }
@@ -75,11 +74,13 @@ std::vector<std::array<std::uint32_t, 8>> place_slots(const StrandGeometry& stra
     parallel_for(slots.size(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b)
             for (std::uint32_t i = sorted.vertex_begin[b]; i < sorted.vertex_begin[b + 1]; ++i)
-                ++slots[b][static_cast<std::size_t>(frame.to_grid(strands.positions[sorted.vertices[i]])[layout.axis]) & 7];
+                ++slots[b][static_cast<std::size_t>(frame.to_grid(strands.positions[sorted.vertices[i]])[layout.axis]) &
+                           7];
     });
     std::vector<std::uint32_t> count(static_cast<std::size_t>(layout.slices));
     for (std::size_t b = 0; b < slots.size(); ++b) {
-        const auto layer = static_cast<std::size_t>(first_voxel(frame, sorted, b)[static_cast<std::size_t>(layout.axis)]);
+        const auto layer =
+            static_cast<std::size_t>(first_voxel(frame, sorted, b)[static_cast<std::size_t>(layout.axis)]);
         for (std::size_t k = 0; k < 8; ++k) {
             const std::uint32_t n = slots[b][k];
             slots[b][k] = count[layer + k];
@@ -90,7 +91,8 @@ std::vector<std::array<std::uint32_t, 8>> place_slots(const StrandGeometry& stra
     for (std::size_t s = 0; s < count.size(); ++s)
         layout.slot_begin[s + 1] = layout.slot_begin[s] + (count[s] + kPad - 1) / kPad * kPad;
     for (std::size_t b = 0; b < slots.size(); ++b) {
-        const auto layer = static_cast<std::size_t>(first_voxel(frame, sorted, b)[static_cast<std::size_t>(layout.axis)]);
+        const auto layer =
+            static_cast<std::size_t>(first_voxel(frame, sorted, b)[static_cast<std::size_t>(layout.axis)]);
         for (std::size_t k = 0; k < 8; ++k) slots[b][k] += layout.slot_begin[layer + k];
     }
     return slots;
@@ -123,8 +125,7 @@ void fill_slots(const StrandGeometry& strands, const GridFrame& frame, const Sor
                 layout.slot_s[slot] = g[layout.axis];
                 const auto texel = static_cast<std::uint32_t>((static_cast<int>(g[layout.axis_v]) & 7) * 8 +
                                                               (static_cast<int>(g[layout.axis_u]) & 7));
-                layout.slot_texel[slot] =
-                    SliceLayout::tile_texels * (tile_of[b][s & 7] - layout.tile_begin[s]) + texel;
+                layout.slot_texel[slot] = SliceLayout::tile_texels * (tile_of[b][s & 7] - layout.tile_begin[s]) + texel;
                 layout.slot_vertex[slot] = vertex;
             }
     });

@@ -1,7 +1,8 @@
 #include "core/volume/strand_pieces.h"
 
-#include <atomic>
-#include <memory>
+#include <array>
+#include <string>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -10,109 +11,127 @@ namespace hairbake {
 namespace {
 
 /// The model is walked in this many chunks whatever the thread count; each counts and then writes for itself.
-constexpr std::size_t kChunks = 32;
+constexpr std::size_t kChunks = 16;
 
-/// Calls visit(segment, part, i, j, k) for every piece of the segments in [begin, end).
+using Counts = std::vector<std::vector<std::uint32_t>>;  ///< [chunk][brick]
+
+/// Calls visit(piece, brick) for every piece of the segments in [begin, end).
 template <class Visit>
 void for_each_piece(const StrandGeometry& strands, const GridFrame& frame, std::size_t begin, std::size_t end,
                     const Visit& visit) {
+    const auto inverse_h = static_cast<float>(1 / frame.voxel_size);
     for (std::size_t i = begin; i < end; ++i) {
         if (strands.segments[i] != Segment::solid) continue;
-        const auto segment = static_cast<std::uint32_t>(i);
-        const CutSegment cut = cut_segment(strands, frame, segment);
-        for (int part = 0; part < cut.parts; ++part) {
-            const Vec3f c = cut.centre(part);
-            visit(segment, part, static_cast<int>(c.x), static_cast<int>(c.y), static_cast<int>(c.z));
+        const float opacity = 0.5f * (strands.opacities[i] + strands.opacities[i + 1]);
+        if (!(opacity > 0)) continue;
+        const float width = 0.5f * (strands.widths[i] + strands.widths[i + 1]);
+        const Vec3f start = frame.to_grid(strands.positions[i]);
+        const Vec3f whole = frame.to_grid(strands.positions[i + 1]) - start;
+        const int parts = std::max(1, static_cast<int>(std::ceil(length(whole))));
+        StrandPiece piece;
+        piece.step = whole / static_cast<float>(parts);
+        piece.weight = opacity * width * inverse_h;
+        piece.segment = static_cast<std::uint32_t>(i);
+        for (int part = 0; part < parts; ++part) {
+            piece.centre = start + (static_cast<float>(part) + 0.5f) * piece.step;
+            visit(piece, frame.brick_at(piece.centre));
         }
     }
 }
 
+/// Calls visit(vertex, brick) for every vertex in [begin, end).
 template <class Visit>
 void for_each_vertex(const StrandGeometry& strands, const GridFrame& frame, std::size_t begin, std::size_t end,
                      const Visit& visit) {
-    for (std::size_t v = begin; v < end; ++v) {
-        const Vec3f g = frame.to_grid(strands.positions[v]);
-        visit(static_cast<std::uint32_t>(v), frame.brick_of(static_cast<int>(g.x), static_cast<int>(g.y), static_cast<int>(g.z)));
-    }
+    for (std::size_t v = begin; v < end; ++v)
+        visit(static_cast<std::uint32_t>(v), frame.brick_at(frame.to_grid(strands.positions[v])));
 }
 
-/// Runs body(chunk, begin, end) for the kChunks chunks of the model's points.
+/// Runs body(chunk, begin, end) for the chunks of the model's points.
 template <class Body>
 void for_each_chunk(const StrandGeometry& strands, const Body& body) {
     const std::size_t count = strands.vertex_count(), grain = (count + kChunks - 1) / kChunks;
     parallel_for(count, grain, [&](std::size_t begin, std::size_t end) { body(begin / grain, begin, end); });
 }
 
-void find_occupied_bricks(const StrandGeometry& strands, const GridFrame& frame, SortedStrands& sorted) {
-    const std::uint32_t count = frame.brick_count();
-    const auto occupied = std::make_unique<std::atomic<std::uint8_t>[]>(count);
-    const auto mark = [&](std::uint32_t brick) {
-        if (!occupied[brick].load(std::memory_order_relaxed)) occupied[brick].store(1, std::memory_order_relaxed);
-    };
-    for_each_chunk(strands, [&](std::size_t, std::size_t begin, std::size_t end) {
+/// Counts what lies in each brick of the frame, for each chunk.
+void count_items(const StrandGeometry& strands, const GridFrame& frame, Counts& pieces, Counts& vertices) {
+    pieces.resize(kChunks);
+    vertices.resize(kChunks);
+    for_each_chunk(strands, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+        auto& piece_count = pieces[chunk];
+        auto& vertex_count = vertices[chunk];
+        piece_count.assign(frame.brick_count(), 0);
+        vertex_count.assign(frame.brick_count(), 0);
         for_each_piece(strands, frame, begin, end,
-                       [&](std::uint32_t, int, int i, int j, int k) { mark(frame.brick_of(i, j, k)); });
-        for_each_vertex(strands, frame, begin, end, [&](std::uint32_t, std::uint32_t brick) { mark(brick); });
+                       [&](const StrandPiece&, std::uint32_t brick) { ++piece_count[brick]; });
+        for_each_vertex(strands, frame, begin, end, [&](std::uint32_t, std::uint32_t brick) { ++vertex_count[brick]; });
     });
-    sorted.slot_of_brick.assign(count, -1);
-    for (std::uint32_t brick = 0; brick < count; ++brick)
-        if (occupied[brick]) {
-            sorted.slot_of_brick[brick] = static_cast<std::int32_t>(sorted.bricks.size());
-            sorted.bricks.push_back(brick);
-        }
+    for (Counts* counts : {&pieces, &vertices}) std::erase_if(*counts, [](const auto& chunk) { return chunk.empty(); });
 }
 
-/// Turns counts[chunk][brick] into the place where each chunk writes its first item of each brick, and returns the
-/// beginnings of the bricks.
-template <class Index>
-std::vector<Index> counts_to_places(std::vector<std::vector<Index>>& counts, std::size_t bricks) {
-    std::vector<Index> begin(bricks + 1);
-    Index sum = 0;
-    for (std::size_t b = 0; b < bricks; ++b) {
-        begin[b] = sum;
-        for (auto& chunk : counts) {
-            const Index n = chunk[b];
-            chunk[b] = sum;
-            sum += n;
-        }
+void find_occupied_bricks(const Counts& pieces, const Counts& vertices, SortedStrands& sorted) {
+    const std::size_t count = pieces.front().size();
+    sorted.slot_of_brick.assign(count, -1);
+    for (std::size_t brick = 0; brick < count; ++brick) {
+        bool occupied = false;
+        for (std::size_t chunk = 0; chunk < pieces.size() && !occupied; ++chunk)
+            occupied = pieces[chunk][brick] > 0 || vertices[chunk][brick] > 0;
+        if (!occupied) continue;
+        sorted.slot_of_brick[brick] = static_cast<std::int32_t>(sorted.bricks.size());
+        sorted.bricks.push_back(static_cast<std::uint32_t>(brick));
     }
-    begin[bricks] = sum;
+}
+
+/// Turns the counts into the place where each chunk writes its first item of each brick; returns the beginnings of the
+/// occupied bricks. Throws Error(out_of_resources).
+std::vector<std::uint32_t> counts_to_places(Counts& counts, const std::vector<std::uint32_t>& bricks) {
+    std::vector<std::uint32_t> begin;
+    std::uint64_t sum = 0;
+    for (const std::uint32_t brick : bricks) {
+        begin.push_back(static_cast<std::uint32_t>(sum));
+        for (auto& chunk : counts) sum += std::exchange(chunk[brick], static_cast<std::uint32_t>(sum));
+    }
+    if (sum >= std::uint64_t{1} << 32)
+        throw Error(ErrorKind::out_of_resources,
+                    "the strands cross " + std::to_string(sum) +
+                        " voxels, 4294967295 is the most: ask for fewer voxels (transmittance.voxels)",
+                    "transmittance.voxels");
+    begin.push_back(static_cast<std::uint32_t>(sum));
     return begin;
 }
 
-void sort_pieces(const StrandGeometry& strands, const GridFrame& frame, SortedStrands& sorted) {
-    std::vector<std::vector<std::size_t>> places(kChunks, std::vector<std::size_t>(sorted.brick_count()));
-    const auto slot = [&](int i, int j, int k) {
-        return static_cast<std::size_t>(sorted.slot_of_brick[frame.brick_of(i, j, k)]);
-    };
-    for_each_chunk(strands, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-        for_each_piece(strands, frame, begin, end,
-                       [&](std::uint32_t, int, int i, int j, int k) { ++places[chunk][slot(i, j, k)]; });
-    });
-    sorted.piece_begin = counts_to_places(places, sorted.brick_count());
+void place_items(const StrandGeometry& strands, const GridFrame& frame, Counts& piece_places, Counts& vertex_places,
+                 SortedStrands& sorted) {
     sorted.pieces.resize(sorted.piece_begin.back());
+    sorted.vertices.resize(sorted.vertex_begin.back());
     for_each_chunk(strands, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-        for_each_piece(strands, frame, begin, end, [&](std::uint32_t segment, int part, int i, int j, int k) {
-            sorted.pieces[places[chunk][slot(i, j, k)]++] = {
-                segment, static_cast<std::uint16_t>(part),
-                static_cast<std::uint16_t>(GridFrame::voxel_in_brick(i, j, k))};
+        auto& piece_place = piece_places[chunk];
+        auto& vertex_place = vertex_places[chunk];
+        for_each_piece(strands, frame, begin, end, [&](const StrandPiece& piece, std::uint32_t brick) {
+            sorted.pieces[piece_place[brick]++] = piece;
         });
+        for_each_vertex(strands, frame, begin, end,
+                        [&](std::uint32_t v, std::uint32_t brick) { sorted.vertices[vertex_place[brick]++] = v; });
     });
 }
 
-void sort_vertices(const StrandGeometry& strands, const GridFrame& frame, SortedStrands& sorted) {
-    std::vector<std::vector<std::uint32_t>> places(kChunks, std::vector<std::uint32_t>(sorted.brick_count()));
-    const auto slot = [&](std::uint32_t brick) { return static_cast<std::size_t>(sorted.slot_of_brick[brick]); };
-    for_each_chunk(strands, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-        for_each_vertex(strands, frame, begin, end,
-                        [&](std::uint32_t, std::uint32_t brick) { ++places[chunk][slot(brick)]; });
-    });
-    sorted.vertex_begin = counts_to_places(places, sorted.brick_count());
-    sorted.vertices.resize(strands.vertex_count());
-    for_each_chunk(strands, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-        for_each_vertex(strands, frame, begin, end, [&](std::uint32_t v, std::uint32_t brick) {
-            sorted.vertices[places[chunk][slot(brick)]++] = v;
-        });
+/// Sorts the pieces of every brick by voxel.
+void sort_within_bricks(SortedStrands& sorted) {
+    sorted.voxel_end.resize(sorted.brick_count() * 512);
+    parallel_for(sorted.brick_count(), 64, [&](std::size_t begin, std::size_t end) {
+        std::vector<StrandPiece> unsorted;
+        for (std::size_t b = begin; b < end; ++b) {
+            unsorted.assign(sorted.pieces.data() + sorted.piece_begin[b],
+                            sorted.pieces.data() + sorted.piece_begin[b + 1]);
+            std::array<std::uint32_t, 512> place{};
+            for (const StrandPiece& piece : unsorted) ++place[static_cast<std::size_t>(piece.voxel_in_brick())];
+            std::uint32_t sum = sorted.piece_begin[b];
+            for (auto& p : place) sum += std::exchange(p, sum);
+            for (const StrandPiece& piece : unsorted)
+                sorted.pieces[place[static_cast<std::size_t>(piece.voxel_in_brick())]++] = piece;
+            std::copy(place.begin(), place.end(), sorted.voxel_end.begin() + static_cast<std::ptrdiff_t>(b * 512));
+        }
     });
 }
 
@@ -120,11 +139,15 @@ void sort_vertices(const StrandGeometry& strands, const GridFrame& frame, Sorted
 
 SortedStrands sort_strands(const StrandGeometry& strands, const GridFrame& frame, Progress& progress) {
     SortedStrands sorted;
-    find_occupied_bricks(strands, frame, sorted);
+    Counts pieces, vertices;
+    count_items(strands, frame, pieces, vertices);
     progress.check();
-    sort_pieces(strands, frame, sorted);
+    find_occupied_bricks(pieces, vertices, sorted);
+    sorted.piece_begin = counts_to_places(pieces, sorted.bricks);
+    sorted.vertex_begin = counts_to_places(vertices, sorted.bricks);
+    place_items(strands, frame, pieces, vertices, sorted);
     progress.check();
-    sort_vertices(strands, frame, sorted);
+    sort_within_bricks(sorted);
     return sorted;
 }
 

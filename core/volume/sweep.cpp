@@ -18,8 +18,8 @@ namespace hairbake {
 
 /// One direction's rays. Ray (U, V) lies in voxel column (U + shift_u(s), V + shift_v(s)) at the middle of slice s.
 struct RayPath {
-    float slope_u, slope_v;   ///< d u / d s, d v / d s
-    float per_slice;          ///< length of the way through one slice, in voxels
+    float slope_u, slope_v;       ///< d u / d s, d v / d s
+    float per_slice;              ///< length of the way through one slice, in voxels
     std::array<float, 6> square;  ///< l l^T, off-diagonal entries doubled: l.T.l = square . T
     Vec3f direction;
     int base_u, base_v;  ///< ray stored first is (base_u, base_v)
@@ -91,16 +91,13 @@ HWY_INLINE V depth_at(const RayPath& path, const float* depth, const float* slab
                       hn::Vec<I> texel) {
     const F d;
     const I di;
-    const auto half = hn::Set(d, 0.5f);
-    const auto ray_u = hn::Sub(hn::NegMulAdd(s, hn::Set(d, path.slope_u), u), hn::Add(half, hn::Set(d, static_cast<float>(path.base_u))));
-    const auto ray_v = hn::Sub(hn::NegMulAdd(s, hn::Set(d, path.slope_v), v), hn::Add(half, hn::Set(d, static_cast<float>(path.base_v))));
+    const auto ray_u =
+        hn::Sub(hn::NegMulAdd(s, hn::Set(d, path.slope_u), u), hn::Set(d, static_cast<float>(path.base_u)));
+    const auto ray_v =
+        hn::Sub(hn::NegMulAdd(s, hn::Set(d, path.slope_v), v), hn::Set(d, static_cast<float>(path.base_v)));
     const auto column = hn::ConvertTo(di, ray_u), row = hn::ConvertTo(di, ray_v);  // both are positive
-    const auto a = hn::Sub(ray_u, hn::ConvertTo(d, column)), b = hn::Sub(ray_v, hn::ConvertTo(d, row));
     const auto at = hn::Add(hn::Mul(row, hn::Set(di, path.stride)), column);
-    const auto d00 = hn::GatherIndex(d, depth, at), d01 = hn::GatherIndex(d, depth + 1, at);
-    const auto d10 = hn::GatherIndex(d, depth + path.stride, at), d11 = hn::GatherIndex(d, depth + path.stride + 1, at);
-    const auto above = hn::MulAdd(a, hn::Sub(d01, d00), d00), below = hn::MulAdd(a, hn::Sub(d11, d10), d10);
-    const auto before = hn::MulAdd(b, hn::Sub(below, above), above);
+    const auto before = hn::GatherIndex(d, depth, at);
     return hn::MulAdd(inside, hn::GatherIndex(d, slab, texel), before);
 }
 
@@ -120,7 +117,8 @@ void read_slots(const SliceLayout& layout, int s, bool ascending, std::span<cons
                                       : hn::Sub(along, hn::Set(d, static_cast<float>(s)));
         auto t0 = hn::Zero(d), tx = t0, ty = t0, tz = t0;
         for (std::size_t k = 0; k < paths.size(); ++k) {
-            const auto depth = depth_at(paths[k], scratch.depth[k].data(), scratch.slab[k].data(), u, v, along, inside, texel);
+            const auto depth =
+                depth_at(paths[k], scratch.depth[k].data(), scratch.slab[k].data(), u, v, along, inside, texel);
             const auto t = hn::Exp(d, hn::Neg(depth));
             t0 = hn::Add(t0, t);
             tx = hn::MulAdd(t, hn::Set(d, paths[k].direction.x), tx);
@@ -138,8 +136,8 @@ void read_slots(const SliceLayout& layout, int s, bool ascending, std::span<cons
     }
 }
 
-void walk(const SliceLayout& layout, std::span<const RayPath> paths, bool ascending, float scale,
-          SweepScratch& scratch, SweepSums& sums) {
+void walk(const SliceLayout& layout, std::span<const RayPath> paths, bool ascending, float scale, SweepScratch& scratch,
+          SweepSums& sums) {
     for (int step = 0; step < layout.slices; ++step) {
         // Light comes from the upper end when the direction ascends along the axis.
         const int s = ascending ? layout.slices - 1 - step : step;
@@ -201,7 +199,8 @@ void sweep(const SliceLayout& layout, std::span<const Vec3d> directions, float s
         scratch.depth[k].assign(static_cast<std::size_t>(paths[k].stride) * static_cast<std::size_t>(paths[k].rows), 0);
     }
     HWY_DYNAMIC_DISPATCH(walk)
-    (layout, std::span<const RayPath>(paths.data(), directions.size()), directions[0][layout.axis] > 0, scale, scratch, sums);
+    (layout, std::span<const RayPath>(paths.data(), directions.size()), directions[0][layout.axis] > 0, scale, scratch,
+     sums);
 }
 
 }  // namespace hairbake

@@ -1,4 +1,5 @@
-// The integrator: walks the extinction grid slice by slice against the light and reads the optical depth at every vertex.
+// The integrator: walks the extinction grid slice by slice against the light and reads the optical depth at every
+// vertex.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +11,8 @@
 
 namespace hairbake {
 
-/// Directions that one walk handles together: they share the major axis and its sign, so that vertices and tensors are read once.
+/// Directions that one walk handles together: they share the major axis and its sign, so that vertices and tensors are
+/// read once.
 constexpr int kSweepLanes = 4;
 
 /// Sums over directions at every slot, as fixed-point integers: the order of additions does not matter, so any
@@ -32,9 +34,9 @@ struct SweepScratch {
     std::vector<float> slab[kSweepLanes];   ///< extinction of the current slice, as tiles
 };
 
-/// Adds exp(-Omega) of 1 to kSweepLanes unit `directions` (away from the hair, in model axes, major axis layout.axis with one sign)
-/// at every slot to `sums`. Rays form a lattice that shifts from slice to slice with the light; a ray takes from
-/// each slice the extinction of the voxel it is in at mid-slice; a vertex interpolates the depth of its four
+/// Adds exp(-Omega) of 1 to kSweepLanes unit `directions` (away from the hair, in model axes, major axis layout.axis
+/// with one sign) at every slot to `sums`. Rays form a lattice that shifts from slice to slice with the light; a ray
+/// takes from each slice the extinction of the voxel it is in at mid-slice; a vertex interpolates the depth of its four
 /// neighbouring rays up to its slice bilinearly and adds its own voxel's extinction for the way inside the slice.
 void sweep(const SliceLayout& layout, std::span<const Vec3d> directions, float scale, SweepScratch& scratch,
            SweepSums& sums);

@@ -1,22 +1,29 @@
 #include "core/volume/transmittance.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <memory>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
 
+#include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/volume/density_grid.h"
 #include "core/volume/extinction_bricks.h"
 #include "core/volume/grid_frame.h"
+#include "core/volume/near_field.h"
 #include "core/volume/slice_layout.h"
 #include "core/volume/strand_pieces.h"
 #include "core/volume/sweep.h"
-#include <chrono>
-#include <cstdio>
-#include <cstdlib>
 
 namespace hairbake {
 namespace {
-struct Clock { std::chrono::steady_clock::time_point t = std::chrono::steady_clock::now(); void lap(const char* n){ auto u=std::chrono::steady_clock::now(); if(getenv("HB_T")) std::fprintf(stderr,"%-10s %.3f\n",n,std::chrono::duration<double>(u-t).count()); t=u; } };
+
+/// Walks along one axis that run at the same time at most, whatever the machine: each thread has sums of its own, 16
+/// bytes a vertex.
+constexpr std::size_t kMostWalks = 16;
 
 int major_axis(const Vec3d& l) {
     const double x = std::abs(l.x), y = std::abs(l.y), z = std::abs(l.z);
@@ -38,53 +45,103 @@ std::vector<std::vector<Vec3d>> group_directions(std::span<const Vec3d> directio
     return groups;
 }
 
-struct Worker { SweepScratch scratch; std::unique_ptr<SweepSums> sums; };
+/// Sums over the directions of every axis, by vertex: [V * SweepSums::components], as integers of the same scale.
+class VertexSums {
+public:
+    explicit VertexSums(std::size_t vertex_count) : values_(vertex_count * SweepSums::components) {}
+
+    void add(const SliceLayout& layout, std::span<const SweepSums> parts) {
+        parallel_for(layout.slot_vertex.size(), 1 << 15, [&](std::size_t begin, std::size_t end) {
+            for (const SweepSums& part : parts)
+                for (std::size_t i = begin; i < end && part.slots > 0; ++i) {
+                    if (layout.slot_vertex[i] == SliceLayout::no_vertex) continue;
+                    std::int32_t* sum = &values_[std::size_t{layout.slot_vertex[i]} * SweepSums::components];
+                    for (std::size_t c = 0; c < SweepSums::components; ++c) sum[c] += part.values[c * part.slots + i];
+                }
+        });
+    }
+
+    std::vector<AngularMean> means(float scale, int directions) const {
+        std::vector<AngularMean> means(values_.size() / SweepSums::components);
+        const float unit = 1 / (scale * static_cast<float>(directions));
+        parallel_for(means.size(), 1 << 15, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t v = begin; v < end; ++v) {
+                const std::int32_t* sum = &values_[v * SweepSums::components];
+                const Vec3f slope{static_cast<float>(sum[1]), static_cast<float>(sum[2]), static_cast<float>(sum[3])};
+                means[v] = {static_cast<float>(sum[0]) * unit, slope * (3 * unit)};
+            }
+        });
+        return means;
+    }
+
+private:
+    std::vector<std::int32_t> values_;
+};
+
+/// Sweeps all groups of one axis and adds what they bring. `swept` is told how many directions are done.
+void sweep_axis(const SliceLayout& layout, std::span<const std::vector<Vec3d>> groups, float scale, Progress& progress,
+                const std::function<void(std::size_t)>& swept, VertexSums& total) {
+    const std::size_t walks = std::min(groups.size(), kMostWalks);
+    std::vector<SweepSums> sums(walks, SweepSums(0));
+    std::atomic<std::size_t> next{0};
+    parallel_for(walks, 1, [&](std::size_t w, std::size_t) {
+        SweepScratch scratch;
+        for (std::size_t g = next++; g < groups.size(); g = next++) {
+            progress.check();
+            if (sums[w].slots == 0) sums[w] = SweepSums(layout.slot_vertex.size());
+            sweep(layout, groups[g], scale, scratch, sums[w]);
+            swept(groups[g].size());
+        }
+    });
+    total.add(layout, sums);
+}
+
+std::vector<AngularMean> sweep_all(const StrandGeometry& strands, const GridFrame& frame, const SortedStrands& sorted,
+                                   const ExtinctionBricks& bricks, std::span<const Vec3d> directions,
+                                   Progress& progress) {
+    const int count = static_cast<int>(directions.size());
+    const float scale = sweep_scale(count);
+    VertexSums total(strands.vertex_count());
+    std::atomic<std::size_t> done{0};
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto groups = group_directions(directions, axis);
+        if (groups.empty()) continue;
+        const SliceLayout layout = make_slice_layout(strands, frame, sorted, bricks, axis, progress);
+        const auto swept = [&](std::size_t n) {
+            progress.report("transmittance", 0.3 + 0.4 * static_cast<double>(done += n) / count);
+        };
+        sweep_axis(layout, groups, scale, progress, swept, total);
+    }
+    return total.means(scale, count);
+}
 
 }  // namespace
 
 Transmittance bake_transmittance_volume(const StrandGeometry& strands, const TransmittanceSettings& settings,
                                         Progress& progress) {
-    Transmittance result;
     const auto directions = make_directions(settings.direction_set, settings.directions, settings.seed);
+    Transmittance result;
     result.directions = settings.directions;
-    bool bounded = false;
-    Clock clock;
-    const GridFrame frame = make_grid_frame(strands, settings, &bounded);
+    if (strands.vertex_count() == 0) return result;
+    bool bounded_by_width = false;
+    const GridFrame frame = make_grid_frame(strands, settings, &bounded_by_width);
     result.voxel_size = frame.voxel_size;
+    if (bounded_by_width)
+        result.warnings.push_back(
+            "the strands are too wide for the voxels asked for: a voxel is twice the 95th "
+            "percentile of the widths, " +
+            std::to_string(frame.voxel_size) + " model units");
+
     const SortedStrands sorted = sort_strands(strands, frame, progress);
-    clock.lap("sort");
-    const ExtinctionBricks bricks = deposit_strands(strands, frame, sorted, progress);
-    clock.lap("deposit");
-    const float scale = sweep_scale(settings.directions);
-    std::vector<std::int32_t> total(strands.vertex_count() * SweepSums::components);
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto groups = group_directions(directions, axis);
-        const SliceLayout layout = make_slice_layout(strands, frame, sorted, bricks, axis, progress);
-        clock.lap("layout");
-        std::vector<Worker> workers(static_cast<std::size_t>(thread_count()));
-        parallel_for(groups.size(), 1, [&](std::size_t begin, std::size_t) {
-            progress.check();
-            Worker& worker = workers[static_cast<std::size_t>(thread_index())];
-            if (!worker.sums) worker.sums = std::make_unique<SweepSums>(layout.slot_vertex.size());
-            sweep(layout, groups[begin], scale, worker.scratch, *worker.sums);
-        });
-        clock.lap("sweep");
-        parallel_for(layout.slot_vertex.size(), 65536, [&](std::size_t begin, std::size_t end) {
-            for (const Worker& worker : workers)
-                if (worker.sums)
-                    for (std::size_t i = begin; i < end; ++i) {
-                        const std::uint32_t v = layout.slot_vertex[i];
-                        if (v == SliceLayout::no_vertex) continue;
-                        for (std::size_t c = 0; c < SweepSums::components; ++c)
-                            total[v * SweepSums::components + c] += worker.sums->values[c * worker.sums->slots + i];
-                    }
-        });
-        clock.lap("merge");
-    }
-    result.average.resize(strands.vertex_count());
-    for (std::size_t v = 0; v < result.average.size(); ++v)
-        result.average[v] = static_cast<float>(total[v * 4]) / scale / static_cast<float>(settings.directions);
-    clock.lap("end");
+    progress.report("transmittance", 0.2);
+    const ExtinctionBricks bricks = deposit_strands(sorted, progress);
+    progress.report("transmittance", 0.3);
+    result.density = std::make_shared<const DensityGrid>(frame, sorted, bricks);
+    result.occupied_voxels = result.density->occupied_voxels();
+
+    const auto means = sweep_all(strands, frame, sorted, bricks, directions, progress);
+    result.average = correct_near_field(strands, frame, sorted, bricks, means, progress);
+    progress.report("transmittance", 1);
     return result;
 }
 

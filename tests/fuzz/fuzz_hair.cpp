@@ -35,14 +35,14 @@ void check_geometry(const HairModel& model, const StrandSettings& settings) {
     const StrandGeometry strands = make_strand_geometry(model, settings);
     const std::size_t v = model.vertex_count();
     demand(strands.strand_count() == model.strand_count() && strands.vertex_count() == v, "counts are kept");
-    demand(strands.widths.size() == v && strands.opacities.size() == v && strands.segment_ok.size() == v,
+    demand(strands.widths.size() == v && strands.opacities.size() == v && strands.segments.size() == v,
            "one value a vertex");
     demand(strands.segment_count == v - model.strand_count(), "a strand of n points has n - 1 segments");
     std::size_t ok = 0;
     for (std::size_t i = 0; i < v; ++i) {
         demand(strands.widths[i] > 0, "widths are positive");
         demand(strands.opacities[i] >= 0 && strands.opacities[i] <= 1, "opacities lie in [0, 1]");
-        ok += strands.segment_ok[i];
+        ok += strands.segments[i] == hairbake::Segment::solid;
     }
     demand(ok + strands.degenerate_segment_count == strands.segment_count, "every segment is counted once");
 }

@@ -17,33 +17,65 @@ int squarings(double exponent) {
     return exponent == std::ldexp(1.0, n) ? n : -1;
 }
 
-double power(double base, double exponent, int squares) {
-    if (base <= 0) return 0;
-    if (squares < 0) return exponent == 0 ? 1 : std::pow(base, exponent);
-    for (int k = 0; k < squares; ++k) base *= base;
-    return base;
+// k[x] = max(0, k[x])^p
+void raise(std::vector<double>& k, double exponent) {
+    const int squares = squarings(exponent);
+    for (double& value : k) value = value > 0 ? value : 0;
+    if (squares < 0)
+        for (double& value : k) value = value > 0 ? (exponent == 0 ? 1 : std::pow(value, exponent)) : 0;
+    for (int s = 0; s < squares; ++s)
+        for (double& value : k) value *= value;
 }
+
+// Sum of flux * kernel over a row, in four chains so that additions overlap.
+double weighted_sum(const std::vector<double>& flux, const std::vector<double>& kernel) {
+    double sum[4] = {0, 0, 0, 0};
+    std::size_t x = 0;
+    for (; x + 4 <= flux.size(); x += 4)
+        for (int c = 0; c < 4; ++c) sum[c] += flux[x + c] * kernel[x + c];
+    for (; x < flux.size(); ++x) sum[0] += flux[x] * kernel[x];
+    return (sum[0] + sum[2]) + (sum[1] + sum[3]);
+}
+
+// One row of the map: flux by channel, and for every tangent the sums over it.
+struct Row {
+    std::vector<double> red, green, blue, cosine, sine, kernel;
+    explicit Row(int width) : red(width), green(width), blue(width), cosine(width), sine(width), kernel(width) {}
+
+    void load(const Vec3f* pixels, double solid_angle) {
+        for (std::size_t x = 0; x < red.size(); ++x) {
+            red[x] = pixels[x].x * solid_angle;
+            green[x] = pixels[x].y * solid_angle;
+            blue[x] = pixels[x].z * solid_angle;
+        }
+    }
+    void point(const LatLongColumns& columns, const Vec3d& t, double sin_theta, double cos_theta) {
+        for (std::size_t x = 0; x < red.size(); ++x) {
+            const double c = (t.x * columns.cos_phi[x] + t.y * columns.sin_phi[x]) * sin_theta + t.z * cos_theta;
+            const double below = 1 - c * c;
+            cosine[x] = c;
+            sine[x] = std::sqrt(below > 0 ? below : 0);
+        }
+    }
+    Vec3d sum(const std::vector<double>& k) const {
+        return {weighted_sum(red, k), weighted_sum(green, k), weighted_sum(blue, k)};
+    }
+};
 
 void sum_one(const EnvironmentMap& map, const LatLongRows& rows, const LatLongColumns& columns, const Vec3d& t,
              double exponent, int maps, Vec3d* sums) {
-    std::vector<double> cos_view, sin_view;
-    for (int m = 0; m < maps; ++m) {
-        cos_view.push_back(std::cos(std::numbers::pi * m / (maps - 1)));
-        sin_view.push_back(std::sin(std::numbers::pi * m / (maps - 1)));
-    }
-    const int squares = squarings(exponent);
-    for (int y = 0; y < map.height; ++y)
-        for (int x = 0; x < map.width; ++x) {
-            const double s = rows.sin_theta[y];
-            const double cosine = t.x * s * columns.cos_phi[x] + t.y * s * columns.sin_phi[x] + t.z * rows.cos_theta[y];
-            const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-            const Vec3d flux = Vec3d(map.pixels[std::size_t(y) * map.width + x]) * rows.solid_angle[y];
-            sums[0] += flux * sine;
-            for (int m = 0; m < maps; ++m) {
-                const double k = power(sine * sin_view[m] - cosine * cos_view[m], exponent, squares);
-                if (k > 0) sums[1 + m] += flux * k;
-            }
+    Row row(map.width);
+    for (int y = 0; y < map.height; ++y) {
+        row.load(map.pixels.data() + std::size_t(y) * map.width, rows.solid_angle[y]);
+        row.point(columns, t, rows.sin_theta[y], rows.cos_theta[y]);
+        sums[0] += row.sum(row.sine);
+        for (int m = 0; m < maps; ++m) {
+            const double theta = std::numbers::pi * m / (maps - 1), c = std::cos(theta), s = std::sin(theta);
+            for (int x = 0; x < map.width; ++x) row.kernel[x] = row.sine[x] * s - row.cosine[x] * c;
+            raise(row.kernel, exponent);
+            sums[1 + m] += row.sum(row.kernel);
         }
+    }
 }
 
 }  // namespace
@@ -55,7 +87,8 @@ std::vector<Vec3d> sum_over_pixels(const EnvironmentMap& map, std::span<const Ve
     const Matrix3 to_world = map_to_world(map);
     std::vector<Vec3d> sums(tangents.size() * (1 + maps));
     parallel_for(tangents.size(), 1, [&](std::size_t i, std::size_t) {
-        sum_one(map, rows, columns, transform_back(to_world, tangents[i]), exponent, maps, sums.data() + i * (1 + maps));
+        sum_one(map, rows, columns, transform_back(to_world, tangents[i]), exponent, maps,
+                sums.data() + i * (1 + maps));
     });
     return sums;
 }
@@ -66,7 +99,8 @@ MapError compare(const IrradianceMaps& maps, std::span<const std::size_t> texels
     for (std::size_t i = 0; i < texels.size(); ++i)
         for (std::size_t k = 0; k < stride; ++k) {
             const Vec3d& expected = truth[i * stride + k];
-            const Vec3d difference = Vec3d(k == 0 ? maps.diffuse[texels[i]] : maps.specular[k - 1][texels[i]]) - expected;
+            const Vec3d difference =
+                Vec3d(k == 0 ? maps.diffuse[texels[i]] : maps.specular[k - 1][texels[i]]) - expected;
             largest = std::max({largest, expected.x, expected.y, expected.z});
             (k == 0 ? diffuse : specular) += dot(difference, difference);
             if (k > 0) specular_truth += dot(expected, expected);

@@ -11,10 +11,11 @@
 
 namespace hairbake::testing {
 
-/// For each tangent: D, then S_m for m = 0 .. maps - 1, [tangents * (1 + maps)]: the sum over every texel, in double, of
-/// radiance * exact solid angle * kernel at the texel's centre. Shares only the map's geometry with what it checks:
+/// For each tangent: D, then S_m for m = 0 .. maps - 1, [tangents * (1 + maps)]: the sum over every texel, in double,
+/// of radiance * exact solid angle * kernel at the texel's centre. Shares only the map's geometry with what it checks:
 /// kernels come from dot products as in spec section 6, powers of 2 by repeated squaring, others by std::pow.
-std::vector<Vec3d> sum_over_pixels(const EnvironmentMap& map, std::span<const Vec3d> tangents, double exponent, int maps);
+std::vector<Vec3d> sum_over_pixels(const EnvironmentMap& map, std::span<const Vec3d> tangents, double exponent,
+                                   int maps);
 
 /// Root mean square over the tangents' texels, all maps and channels of (baked - truth), over the largest truth.
 struct MapError {

@@ -89,7 +89,8 @@ TEST(StrandGeometry, CountsSegmentsAndLeavesTheDegenerateOnesOut) {
     model.positions = {{0, 0, 0}, {0, 0, 0}, {0.9e-5f, 0, 0}, {2.0e-5f, 0, 0}, {0, 10, 0}, {0, 0, 1}, {0, 0, 2}};
     model.default_thickness = 0.01f;
     const StrandGeometry geometry = make_strand_geometry(model, {});
-    EXPECT_EQ(geometry.segment_ok, (std::vector<std::uint8_t>{0, 0, 1, 0, 0, 1, 0}));
+    using enum Segment;
+    EXPECT_EQ(geometry.segments, (std::vector<Segment>{degenerate, degenerate, solid, none, none, solid, none}));
     EXPECT_EQ(geometry.segment_count, 4u);  // 3 + 0 + 1
     EXPECT_EQ(geometry.degenerate_segment_count, 2u);
     EXPECT_EQ(geometry.bounds_min, Vec3f(0, 0, 0));
@@ -108,7 +109,7 @@ TEST(StrandGeometry, HoldsStrandsOfOnePointAndNoStrandsAtAll) {
     const StrandGeometry points = make_strand_geometry(read_hair(make_hair_bytes(31, {0, 0, 0}), "points.hair"), {});
     EXPECT_EQ(points.strand_count(), 3u);
     EXPECT_EQ(points.segment_count, 0u);
-    EXPECT_EQ(points.segment_ok, std::vector<std::uint8_t>(3, 0));
+    EXPECT_EQ(points.segments, std::vector<Segment>(3, Segment::none));
     EXPECT_EQ(make_strand_geometry(read_hair(make_hair_bytes(31, {}), "empty.hair"), {}).strand_count(), 0u);
     EXPECT_EQ(make_strand_geometry(HairModel{}, {}).strand_count(), 0u);
 }

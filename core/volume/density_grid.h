@@ -1,0 +1,35 @@
+// The extinction as an OpenVDB grid: what other programs read, and the record of what the sweep used.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+
+#include "core/volume/extinction_bricks.h"
+#include "core/volume/grid_frame.h"
+#include "core/volume/strand_pieces.h"
+
+namespace hairbake {
+
+/// A sparse float grid "density": the trace of the extinction tensors over the voxel size, that is, opacity * width *
+/// strand length per volume, in 1 / model unit; voxel (i, j, k) of GridFrame is index (i, j, k), its centre placed in
+/// model space by the grid's transform. Leaves are the bricks. Immutable; may be read from several threads.
+class DensityGrid {
+public:
+    DensityGrid(const GridFrame& frame, const SortedStrands& sorted, const ExtinctionBricks& bricks);
+    ~DensityGrid();
+    DensityGrid(DensityGrid&&) noexcept;
+    DensityGrid& operator=(DensityGrid&&) noexcept;
+
+    std::uint64_t occupied_voxels() const;
+    /// Density of a voxel, 0 outside.
+    float density(int i, int j, int k) const;
+    /// Writes a .vdb file. Throws Error(out_of_resources) when it cannot be written.
+    void write(const std::filesystem::path& file) const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace hairbake

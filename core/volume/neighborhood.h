@@ -1,0 +1,65 @@
+// A brick with what lies near it, laid out for the near-field correction.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/base/vec.h"
+#include "core/volume/extinction_bricks.h"
+#include "core/volume/grid_frame.h"
+#include "core/volume/strand_pieces.h"
+
+namespace hairbake {
+
+/// Local space: voxels, origin at `corner`, one voxel below the brick on every axis: the brick's own voxels are 1 to 8,
+/// the halo is 0 and
+/// 9. Reused from brick to brick; one per thread.
+struct Neighborhood {
+    static constexpr int side = 10;  ///< voxels
+    /// Pieces lie in cells of half a voxel: cell 0 is the upper half of the halo's voxels below, 1 to 16 the brick.
+    static constexpr int cell_side = 18;
+    static constexpr int cells = cell_side * cell_side * cell_side;
+
+    Vec3f corner;  ///< grid space
+    /// Pieces of at most half a voxel by cell, z fastest: cell c holds [begin[c], begin[c + 1]). Arrays are padded for
+    /// vector loads.
+    std::array<std::uint32_t, cells + 1> begin{};
+    std::vector<float> centre_x, centre_y, centre_z;  ///< local space
+    std::vector<float> axis_x, axis_y, axis_z;        ///< unit
+    std::vector<float> half_length;                   ///< voxels
+    std::vector<float> weight;                        ///< opacity * width / h
+    std::vector<std::int32_t> segment;
+
+    /// Extinction tensors of ExtinctionBricks: [component][voxel], components as there, then the trace.
+    std::array<std::vector<float>, ExtinctionBricks::components + 1> tensor;
+
+    static int voxel(int i, int j, int k) { return (i * side + j) * side + k; }
+    static int cell(int i, int j, int k) { return (i * cell_side + j) * cell_side + k; }
+    /// Cell coordinate of a local coordinate.
+    static int cell_of(float local) { return static_cast<int>(2 * local) - 1; }
+
+    void collect(const GridFrame& frame, const SortedStrands& sorted, const ExtinctionBricks& bricks,
+                 std::size_t brick);
+
+private:
+    struct Place {
+        std::uint32_t slot, voxel, local;  ///< brick number, voxel in it, voxel in this neighborhood
+    };
+    struct Half {
+        StrandPiece piece;  ///< a piece or half of one, grid space
+        std::int32_t cell;
+    };
+
+    void find_places(const GridFrame& frame, const SortedStrands& sorted, const std::array<int, 3>& brick);
+    void collect_pieces(const SortedStrands& sorted);
+    void add_halves(const StrandPiece& piece);
+    void sort_halves();
+    void collect_tensors(const ExtinctionBricks& bricks);
+
+    std::vector<Place> places_;  ///< voxels of the brick and its halo that hold something
+    std::vector<Half> halves_;
+};
+
+}  // namespace hairbake
