@@ -38,13 +38,13 @@ void check_geometry(const HairModel& model, const StrandSettings& settings) {
     demand(strands.widths.size() == v && strands.opacities.size() == v && strands.segments.size() == v,
            "one value a vertex");
     demand(strands.segment_count == v - model.strand_count(), "a strand of n points has n - 1 segments");
-    std::size_t ok = 0;
+    std::size_t solid = 0;
     for (std::size_t i = 0; i < v; ++i) {
         demand(strands.widths[i] > 0, "widths are positive");
         demand(strands.opacities[i] >= 0 && strands.opacities[i] <= 1, "opacities lie in [0, 1]");
-        ok += strands.segments[i] == hairbake::Segment::solid;
+        solid += strands.segments[i] == Segment::solid;
     }
-    demand(ok + strands.degenerate_segment_count == strands.segment_count, "every segment is counted once");
+    demand(solid + strands.degenerate_segment_count == strands.segment_count, "every segment is counted once");
 }
 
 }  // namespace

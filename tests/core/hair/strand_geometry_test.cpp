@@ -90,11 +90,30 @@ TEST(StrandGeometry, CountsSegmentsAndLeavesTheDegenerateOnesOut) {
     model.default_thickness = 0.01f;
     const StrandGeometry geometry = make_strand_geometry(model, {});
     using enum Segment;
-    EXPECT_EQ(geometry.segments, (std::vector<Segment>{degenerate, degenerate, solid, none, none, solid, none}));
+    EXPECT_EQ(geometry.segments, (std::vector{degenerate, degenerate, solid, none, none, solid, none}));
     EXPECT_EQ(geometry.segment_count, 4u);  // 3 + 0 + 1
     EXPECT_EQ(geometry.degenerate_segment_count, 2u);
     EXPECT_EQ(geometry.bounds_min, Vec3f(0, 0, 0));
     EXPECT_EQ(geometry.bounds_max, Vec3f(2.0e-5f, 10, 2));
+}
+
+TEST(StrandGeometry, TheSegmentsAtAVertexReachAcrossDegenerateOnes) {
+    // Along y: 0, 0, 1, 1, 2, 3 in one strand, then a strand of one point and one of two. The segments of the first:
+    // 0 degenerate, 1 solid, 2 degenerate, 3 solid, 4 solid.
+    HairModel model;
+    model.strand_begin = {0, 6, 7, 9};
+    model.positions = {{0, 0, 0}, {0, 0, 0}, {0, 1, 0}, {0, 1, 0}, {0, 2, 0},
+                       {0, 3, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}};
+    model.default_thickness = 0.01f;
+    const StrandGeometry geometry = make_strand_geometry(model, {});
+    const std::vector<std::vector<std::uint32_t>> solid_at{{1}, {1}, {1, 3}, {1, 3}, {3, 4}, {4}, {}, {7}, {7}};
+    for (std::uint32_t v = 0; v < solid_at.size(); ++v) {
+        const AdjacentSegments adjacent = adjacent_segments(geometry, v);
+        std::vector<std::uint32_t> solid;
+        for (std::uint32_t i = 0; i < solid_at.size(); ++i)
+            if (adjacent.contains(i) && geometry.segments[i] == Segment::solid) solid.push_back(i);
+        EXPECT_EQ(solid, solid_at[v]) << "vertex " << v;
+    }
 }
 
 TEST(StrandGeometry, ModelsOfAnySizeKeepTheirSegments) {
@@ -109,7 +128,7 @@ TEST(StrandGeometry, HoldsStrandsOfOnePointAndNoStrandsAtAll) {
     const StrandGeometry points = make_strand_geometry(read_hair(make_hair_bytes(31, {0, 0, 0}), "points.hair"), {});
     EXPECT_EQ(points.strand_count(), 3u);
     EXPECT_EQ(points.segment_count, 0u);
-    EXPECT_EQ(points.segments, std::vector<Segment>(3, Segment::none));
+    EXPECT_EQ(points.segments, std::vector(3, Segment::none));
     EXPECT_EQ(make_strand_geometry(read_hair(make_hair_bytes(31, {}), "empty.hair"), {}).strand_count(), 0u);
     EXPECT_EQ(make_strand_geometry(HairModel{}, {}).strand_count(), 0u);
 }
