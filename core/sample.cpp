@@ -45,16 +45,21 @@ std::vector<std::filesystem::path> write_samples(const std::filesystem::path& fo
     const GroomSettings groom = groom_of(settings);
     make_folder(folder);
     std::vector<std::filesystem::path> files;
-    const auto next = [&](const char* name) {
+    // Each file appears whole: it is written under another name first.
+    const auto add = [&](const std::string& name, const auto& write) {
         progress.check();
         progress.report("write", static_cast<double>(files.size()) / 5);
-        return files.emplace_back(folder / name);
+        const std::filesystem::path part = folder / (".part-" + name);
+        write(part);
+        std::filesystem::rename(part, files.emplace_back(folder / name));
     };
-    write_hair(generate_groom(groom), next("groom.hair"));
-    write_obj(make_head_mesh(), next("head.obj"));
+    add("groom.hair", [&](const auto& file) { write_hair(generate_groom(groom), file); });
+    add("head.obj", [&](const auto& file) { write_obj(make_head_mesh(), file); });
     for (const auto& [sky, name] : {std::pair(Sky::sunny, "sky.hdr"), std::pair(Sky::studio, "studio.hdr"),
                                     std::pair(Sky::overcast, "overcast.hdr")})
-        write_environment(generate_sky(sky, settings.map_width, settings.seed), next(name));
+        add(name, [&, sky = sky](const auto& file) {
+            write_environment(generate_sky(sky, settings.map_width, settings.seed), file);
+        });
     progress.report("write", 1);
     return files;
 }

@@ -1,6 +1,7 @@
 #include "core/output/tone.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace hairbake {
@@ -9,9 +10,21 @@ namespace {
 /// Narkowicz's fit of the ACES film curve (2015): 0 to 0, 1 to 0.80, never above 1.
 double film(double x) { return std::clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0); }
 
+/// The linear values between neighbouring 8-bit codes: code k stands for values from boundary k - 1 to k.
+std::array<float, 255> make_boundaries() {
+    std::array<float, 255> boundaries;
+    for (int k = 0; k < 255; ++k) {
+        const double encoded = (k + 0.5) / 255;
+        const double linear = encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+        boundaries[k] = static_cast<float>(linear);
+    }
+    return boundaries;
+}
+
 std::uint8_t to_srgb(double linear) {
-    const double encoded = linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-    return static_cast<std::uint8_t>(std::lround(255 * encoded));
+    static const std::array<float, 255> boundaries = make_boundaries();
+    return static_cast<std::uint8_t>(
+        std::upper_bound(boundaries.begin(), boundaries.end(), static_cast<float>(linear)) - boundaries.begin());
 }
 
 }  // namespace

@@ -21,10 +21,10 @@ std::string oiiotool_info(const std::filesystem::path& file) {
     return run_program("oiiotool --info -v " + file.string() + " 2>&1").output;
 }
 
-/// The values of one pixel as oiiotool prints them: "Pixel (0, 5):" and then "(20 20.25 -20)" or the like.
+/// One pixel as oiiotool prints it: "Pixel (3, 6): 2027.000000000 2027.250000000 1973.000000000".
 std::string oiiotool_pixel(const std::filesystem::path& file, int x, int y) {
-    const std::string cut = "1x1+" + std::to_string(x) + "+" + std::to_string(y);
-    return run_program("oiiotool " + file.string() + " --cut " + cut + " --dumpdata " + " 2>&1").output;
+    const std::string place = "Pixel (" + std::to_string(x) + ", " + std::to_string(y) + "):";
+    return run_program("oiiotool --dumpdata " + file.string() + " 2>&1 | grep -F '" + place + "'").output;
 }
 
 bool contains(const std::string& text, const std::string& piece) { return text.find(piece) != std::string::npos; }

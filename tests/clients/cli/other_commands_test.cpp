@@ -1,0 +1,67 @@
+// info, sample, compare, presets, --version and --help.
+#include <gtest/gtest.h>
+
+#include "tests/clients/cli/cli.h"
+
+namespace hairbake::test_support {
+namespace {
+
+TEST(Program, TellsItsVersionAndItsExitCodes) {
+    EXPECT_TRUE(hairbake("--version").output.starts_with("hairbake 0."));
+    const Finished help = hairbake("--help");
+    EXPECT_EQ(help.exit_code, 0);
+    for (const char* piece : {"bake", "info", "sample", "compare", "presets", "2  usage", "5  cancelled"})
+        EXPECT_TRUE(contains(help.output, piece)) << piece;
+    EXPECT_TRUE(contains(hairbake("bake --help").output, "Exit codes"));
+}
+
+TEST(SampleCommand, WritesAGroomAHeadAndThreeSkies) {
+    const Workshop workshop;
+    for (const char* name : {"groom.hair", "head.obj", "sky.hdr", "studio.hdr", "overcast.hdr"})
+        EXPECT_TRUE(std::filesystem::exists(workshop.path(std::string("samples/") + name))) << name;
+}
+
+TEST(InfoCommand, TellsTheFactsOfAModelAMapAndAResult) {
+    const Workshop workshop;
+    ASSERT_EQ(hairbake(workshop.quick_bake()).exit_code, 0);
+    const Finished hair = hairbake("info " + workshop.path("samples/groom.hair"));
+    EXPECT_TRUE(contains(hair.output, "hair model") && contains(hair.output, "3000")) << hair.output;
+    EXPECT_TRUE(contains(hairbake("info " + workshop.path("samples/sky.hdr")).output, "environment map"));
+    EXPECT_TRUE(contains(hairbake("info " + workshop.path("out")).output, "bake result"));
+    const auto json = nlohmann::json::parse(hairbake("info --json " + workshop.path("out")).output);
+    EXPECT_EQ(json["kind"], "bake result");
+    EXPECT_EQ(hairbake("info " + workshop.path("missing") + " 2>&1").exit_code, 3);
+}
+
+TEST(CompareCommand, GivesDifferencesAsATableAndAsJson) {
+    const Workshop workshop;
+    ASSERT_EQ(hairbake(workshop.quick_bake()).exit_code, 0);
+    ASSERT_EQ(hairbake("bake" + workshop.hair() + workshop.env() + workshop.out("other") +
+                       " --directions 9 --voxels 32 --face-size 4 --specular-maps 3")
+                  .exit_code,
+              0);
+    const std::string two = workshop.path("out") + " " + workshop.path("other");
+    const auto report = nlohmann::json::parse(hairbake("compare --json " + two).output);
+    EXPECT_EQ(report["same"], false);
+    EXPECT_GT(report["transmittance"]["max_abs"], 0);
+    EXPECT_EQ(report["diffuse"]["max_abs"], 0);  // the lighting is the same
+    EXPECT_TRUE(contains(hairbake("compare " + two).output, "specular_02"));
+    EXPECT_EQ(hairbake("compare " + workshop.path("out") + " /no/such 2>&1").exit_code, 3);
+}
+
+TEST(PresetsCommand, ListsPresetsShowsOneAndPrintsTheSchema) {
+    const Finished list = hairbake("presets");
+    for (const char* name : {"draft", "final", "paper"}) EXPECT_TRUE(contains(list.output, name)) << name;
+    EXPECT_EQ(nlohmann::json::parse(hairbake("presets paper").output)["irradiance"]["specular_maps"], 9);
+    EXPECT_EQ(nlohmann::json::parse(hairbake("presets --schema").output)["title"], "hairbake request");
+}
+
+TEST(ShippedPresets, NeedNoFilesBesideTheProgram) {
+    const TemporaryFolder folder;
+    const Finished run = run_program("cp " + shell_word(HAIRBAKE_PROGRAM) + " " + (folder / "copy").string() +
+                                     " && cd / && " + (folder / "copy").string() + " presets draft");
+    EXPECT_EQ(run.exit_code, 0) << run.output;
+}
+
+}  // namespace
+}  // namespace hairbake::test_support

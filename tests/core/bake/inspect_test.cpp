@@ -1,0 +1,52 @@
+#include "core/inspect.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/bake.h"
+#include "tests/core/bake/small_inputs.h"
+
+namespace hairbake {
+namespace {
+
+using Json = nlohmann::json;
+using test_support::SmallInputs;
+
+TEST(Inspect, TellsModelMapAndResultApart) {
+    const SmallInputs inputs;
+    Progress progress;
+    BakeResult result = bake(inputs.request(), 2, progress);
+    write_result(result, inputs.folder / "out", progress);
+
+    const Json hair = Json::parse(inspect(*inputs.request().hair, progress));
+    EXPECT_EQ(hair["kind"], "hair model");
+    EXPECT_EQ(hair["vertices"], 3000);
+    const Json map = Json::parse(inspect(*inputs.request().environment, progress));
+    EXPECT_EQ(map["kind"], "environment map");
+    EXPECT_EQ(map["width"], 64);
+    EXPECT_EQ(map["brightest_pixel"]["radiance"].size(), 3u);
+    const Json baked = Json::parse(inspect(inputs.folder / "out", progress));
+    EXPECT_EQ(baked["kind"], "bake result");
+    EXPECT_EQ(baked["id"], result.id);
+    EXPECT_TRUE(baked["files"].contains("transmittance.npy"));
+}
+
+TEST(Inspect, OtherFilesAreBadInput) {
+    const SmallInputs inputs;
+    std::ofstream(inputs.folder / "text") << "neither hair nor picture";
+    Progress progress;
+    for (const char* name : {"text", "missing", "samples"})
+        EXPECT_THROW(inspect(inputs.folder / name, progress), Error);
+}
+
+TEST(Inspect, LinesShowNestedNamesWithDots) {
+    const std::string lines = as_lines(R"({"kind": "x", "bounds": {"minimum": [1, 2.5, -3]}, "warnings": []})");
+    EXPECT_NE(lines.find("bounds.minimum"), std::string::npos);
+    EXPECT_NE(lines.find("1  2.5  -3"), std::string::npos);
+    EXPECT_EQ(lines.find("warnings"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace hairbake
