@@ -1,0 +1,257 @@
+// Accuracy, speed and memory of the transmittance stage, as plain tables.
+//
+//   bench_transmittance [--quick]      (--quick: models of 200,000 vertices, 1,024 reference directions)
+//
+// Every ratio is taken within this run: the peers are timed on a sample of the same model's vertices and scaled.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "core/base/parallel.h"
+#include "core/base/random.h"
+#include "core/hair/groom_generator.h"
+#include "core/hair/hair_file.h"
+#include "core/reference/error_bar.h"
+#include "core/reference/nearest_strand.h"
+#include "core/reference/tracer.h"
+#include "core/volume/density_grid.h"
+#include "core/volume/transmittance.h"
+#include "tests/bench/floor.h"
+#include "tests/bench/vdb_march.h"
+
+using namespace hairbake;
+
+namespace {
+
+struct Options {
+    bool quick = false;
+    std::size_t vertices() const { return quick ? 200'000 : 1'500'000; }
+    int reference_directions() const { return quick ? 1024 : 4096; }
+};
+
+double seconds(const std::function<void()>& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+StrandGeometry groom(GroomStyle style, std::size_t vertices, std::uint32_t per_strand = 30) {
+    GroomSettings settings;
+    settings.style = style;
+    settings.vertices = vertices;
+    settings.vertices_per_strand = per_strand;
+    return make_strand_geometry(generate_groom(settings), {});
+}
+
+/// Best of three: the machine is shared.
+double time_bake(const StrandGeometry& strands, const TransmittanceSettings& settings,
+                 Transmittance* result = nullptr) {
+    Progress progress;
+    double best = 1e9;
+    for (int run = 0; run < 3; ++run)
+        best = std::min(best, seconds([&] {
+                            Transmittance baked = bake_transmittance_volume(strands, settings, progress);
+                            if (result) *result = std::move(baked);
+                        }));
+    return best;
+}
+
+/// 2,000 random vertices that are at least one width away from any strand that is not their own.
+std::vector<std::uint32_t> scored_vertices(const StrandGeometry& strands) {
+    Random random(7);
+    std::vector<std::uint32_t> drawn(4000), kept;
+    for (auto& v : drawn) v = static_cast<std::uint32_t>(random.next() * double(strands.vertex_count()));
+    std::sort(drawn.begin(), drawn.end());
+    const auto distance = distance_to_other_strands(strands, drawn, 2);
+    for (std::size_t k = 0; k < drawn.size(); ++k)
+        if (distance[k] >= 1) kept.push_back(drawn[k]);
+    std::vector<std::uint32_t> spread;
+    const std::size_t count = std::min<std::size_t>(2000, kept.size());
+    for (std::size_t k = 0; k < count; ++k) spread.push_back(kept[k * kept.size() / count]);
+    return spread;
+}
+
+void print_accuracy(const std::string& name, const StrandGeometry& strands, const char* target,
+                    const Options& options) {
+    Progress progress;
+    const Transmittance baked = bake_transmittance_volume(strands, {}, progress);
+    const auto vertices = scored_vertices(strands);
+    const StrandScene scene(strands, progress);
+    const auto directions = make_directions(DirectionSet::fibonacci, options.reference_directions(), 0);
+    const auto traced = trace_transmittance(scene, vertices, directions, progress);
+    std::vector<float> average;
+    for (const std::uint32_t v : vertices) average.push_back(baked.average[v]);
+    const ErrorBar bar = error_statistics(average, traced);
+    const double mean = std::accumulate(traced.begin(), traced.end(), 0.0) / double(traced.size());
+    std::printf("| %s | %zu | %u | %.3f | %.4f (%.4f to %.4f) | %+.4f | %s |\n", name.c_str(), strands.vertex_count(),
+                bar.vertices, mean, bar.rmse, bar.rmse_ci95[0], bar.rmse_ci95[1], bar.bias, target);
+    std::fflush(stdout);
+}
+
+void accuracy_table(const Options& options) {
+    std::printf(
+        "\n## Accuracy: 256 voxels, 100 directions, against Embree with %d directions\n\n"
+        "| model | vertices | scored | mean A | RMSE (95 %% interval) | bias | target "
+        "|\n|---|---|---|---|---|---|---|\n",
+        options.reference_directions());
+    const char* target = "RMSE <= 0.015, abs. bias <= 0.006";
+    print_accuracy("generated curly", groom(GroomStyle::curly, options.vertices()), target, options);
+    print_accuracy("generated straight", groom(GroomStyle::straight, options.vertices()), target, options);
+    print_accuracy("generated wavy", groom(GroomStyle::wavy, options.vertices()), "none", options);
+    const char* given = std::getenv("HAIRBAKE_SHARED_DATA");
+    const std::filesystem::path folder = std::filesystem::path(given ? given : "../shared/data") / "hair";
+    if (!std::filesystem::is_directory(folder)) {
+        std::printf("no real models in %s: set HAIRBAKE_SHARED_DATA\n", folder.c_str());
+        return;
+    }
+    print_accuracy("Sintel", make_strand_geometry(read_hair(folder / "sintel.hair"), {}), "RMSE <= 0.018", options);
+    print_accuracy("fur ball", make_strand_geometry(read_hair(folder / "fur.hair"), {}), "none", options);
+}
+
+/// Vertices of whole strands spread over the groom, about `count` of them.
+std::vector<std::uint32_t> spread_strands(const StrandGeometry& strands, std::size_t count) {
+    const std::size_t per_strand = strands.vertex_count() / strands.strand_count();
+    const std::size_t wanted = std::min(strands.strand_count(), count / per_strand);
+    std::vector<std::uint32_t> vertices;
+    for (std::size_t k = 0; k < wanted; ++k) {
+        const std::size_t s = k * strands.strand_count() / wanted;
+        for (std::uint32_t v = strands.strand_begin[s]; v < strands.strand_begin[s + 1]; ++v) vertices.push_back(v);
+    }
+    return vertices;
+}
+
+void speed_table(const std::string& name, const StrandGeometry& strands) {
+    Progress progress;
+    Transmittance baked;
+    const double ours = time_bake(strands, {}, &baked);
+    const auto directions = make_directions(DirectionSet::fibonacci, 100, 1);
+    const auto scale = [&](std::size_t sample) { return double(strands.vertex_count()) / double(sample); };
+
+    const StrandScene scene(strands, progress);
+    const auto traced = spread_strands(strands, 30'000);
+    const double embree =
+        seconds([&] { trace_transmittance(scene, traced, directions, progress); }) * scale(traced.size());
+
+    const auto file = std::filesystem::temp_directory_path() / "hairbake_bench_density.vdb";
+    baked.density->write(file);
+    std::vector<Vec3f> positions;
+    for (const std::uint32_t v : spread_strands(strands, 6'000)) positions.push_back(strands.positions[v]);
+    std::vector<float> average;
+    const double march = bench::time_vdb_march(file, positions, directions, average) * scale(positions.size());
+    std::filesystem::remove(file);
+
+    std::printf("| %s | %.2f | %.0f | %.0f | %.0f | %.0f |\n", name.c_str(), ours, embree, embree / ours, march,
+                march / ours);
+    std::fflush(stdout);
+}
+
+void floors(const StrandGeometry& strands) {
+    const double terms = double(strands.vertex_count()) * 100;
+    const double bandwidth = bench::memory_bandwidth();
+    Progress progress;
+    Transmittance baked;
+    const double ours = time_bake(strands, {}, &baked);
+    // Four directions share one pass. A pass reads 16 bytes and reads and writes 16 bytes of sums a vertex, and reads
+    // 12 bytes of tensor for every voxel of an occupied brick; the rays stay in the cache.
+    const double bytes = terms / 4 * (16 + 2 * 16) + 25.0 * 12 * double(baked.occupied_voxels);
+    std::printf("\n## Floors: %zu vertices x 100 directions\n\n", strands.vertex_count());
+    std::printf("memory: %.2f GB at least at a measured %.1f GB/s: %.3f s\n", bytes * 1e-9, bandwidth * 1e-9,
+                bytes / bandwidth);
+    const double arithmetic = bench::arithmetic_time(static_cast<std::size_t>(terms));
+    std::printf("arithmetic: a gather, an exp and four sums for each vertex and direction: %.3f s\n", arithmetic);
+    std::printf("whole stage: %.2f s, %.1f times the larger floor\n", ours,
+                ours / std::max(arithmetic, bytes / bandwidth));
+}
+
+void scaling_tables(const Options& options) {
+    const StrandGeometry strands = groom(GroomStyle::curly, options.vertices());
+    std::printf(
+        "\n## Time by directions: %zu vertices, 256 voxels\n\n| directions | seconds | ns per vertex and direction "
+        "|\n|---|---|---|\n",
+        strands.vertex_count());
+    for (const int directions : {9, 25, 64, 100}) {
+        TransmittanceSettings settings;
+        settings.directions = directions;
+        const double time = time_bake(strands, settings);
+        std::printf("| %d | %.2f | %.1f |\n", directions, time,
+                    1e9 * time / double(strands.vertex_count()) / directions);
+        std::fflush(stdout);
+    }
+    std::printf(
+        "\n## Time by vertices: 100 directions, 256 voxels, wavy grooms\n\n| vertices | seconds | microseconds per "
+        "vertex |\n|---|---|---|\n");
+    for (const double millions : {0.687532, 0.872756, 1.031268, 1.519823, 3.1}) {
+        const auto count = static_cast<std::size_t>(millions * 1e6 * (options.quick ? 0.1 : 1));
+        const double time = time_bake(groom(GroomStyle::wavy, count), {});
+        std::printf("| %zu | %.2f | %.3f |\n", count, time, 1e6 * time / double(count));
+        std::fflush(stdout);
+    }
+}
+
+double peak_megabytes() {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);)
+        if (line.rfind("VmHWM:", 0) == 0) return std::atof(line.c_str() + 6) / 1024;
+    return 0;
+}
+
+/// The child of memory_table: model and bake alone in a process.
+int measure_memory(std::size_t vertices, int voxels) {
+    const StrandGeometry strands = groom(GroomStyle::wavy, vertices);
+    const double before = peak_megabytes();
+    TransmittanceSettings settings;
+    settings.voxels = voxels;
+    Progress progress;
+    const Transmittance baked = bake_transmittance_volume(strands, settings, progress);
+    const double occupied = double(baked.occupied_voxels);
+    std::printf("| %zu | %d | %.0f | %.0f | %.1f | %.0f |\n", vertices, voxels, before, peak_megabytes(),
+                occupied * 1e-6, (peak_megabytes() - before) * 1e6 / occupied);
+    return 0;
+}
+
+void memory_table(const char* program, const Options& options) {
+    std::printf(
+        "\n## Peak memory, without the reference scene\n\n| vertices | voxels | model alone, MB | with bake, MB | "
+        "occupied voxels, M | "
+        "bytes per occupied voxel |\n|---|---|---|---|---|---|\n");
+    std::fflush(stdout);
+    for (const auto& [vertices, voxels] :
+         {std::pair{3'100'000, 256}, std::pair{3'100'000, 512}, std::pair{1'500'000, 512}}) {
+        const std::string command = std::string(program) + " --memory " +
+                                    std::to_string(options.quick ? vertices / 10 : vertices) + " " +
+                                    std::to_string(voxels);
+        if (std::system(command.c_str()) != 0) std::printf("| failed: %s |\n", command.c_str());
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc == 4 && std::strcmp(argv[1], "--memory") == 0)
+        return measure_memory(std::strtoull(argv[2], nullptr, 10), std::atoi(argv[3]));
+    const Options options{argc > 1 && std::strcmp(argv[1], "--quick") == 0};
+    std::printf("# Transmittance, %d threads\n", thread_count());
+    {
+        const StrandGeometry curly = groom(GroomStyle::curly, options.vertices());
+        std::printf(
+            "\n## Speed: %zu vertices x 100 directions, 256 voxels; peers on a sample, scaled\n\n"
+            "| model | hairbake, s | Embree packets, s | ratio | VolumeHDDA march, s | ratio "
+            "|\n|---|---|---|---|---|---|\n",
+            curly.vertex_count());
+        speed_table("generated curly", curly);
+        speed_table("generated straight", groom(GroomStyle::straight, options.vertices()));
+        floors(curly);
+    }
+    scaling_tables(options);
+    memory_table(argv[0], options);
+    accuracy_table(options);
+}

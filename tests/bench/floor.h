@@ -1,0 +1,15 @@
+// What this machine could do at best: the floors that the sweep's time is held against.
+#pragma once
+
+#include <cstddef>
+
+namespace hairbake::bench {
+
+/// Bytes per second that all cores together read and write in a stream over arrays larger than the caches.
+double memory_bandwidth();
+
+/// Seconds that all cores together need for `count` times one gather from a small table, one exp and the four
+/// multiply-adds of the sums: the arithmetic that no sweep can leave out, in vectors of this machine.
+double arithmetic_time(std::size_t count);
+
+}  // namespace hairbake::bench
