@@ -156,7 +156,8 @@ void read_pixels(const Source& source, const OIIO::ImageSpec& spec, Progress& pr
     for (int begin = 0; begin < spec.height; begin += step) {
         progress.check();
         const int end = std::min(spec.height, begin + step);
-        if (!read_rows(source, spec, begin, end, rows))
+        // Some readers (TIFF cut short) report success and leave an error behind.
+        if (!read_rows(source, spec, begin, end, rows) || source.input->has_error())
             source.fail("rows " + std::to_string(begin) + " to " + std::to_string(end - 1) +
                         " cannot be decoded: " + source.input->geterror());
         Vec3f* pixel = image.pixels.data() + std::size_t(begin) * spec.width;
