@@ -135,6 +135,7 @@ void add_notes(const OIIO::ImageSpec& spec, OIIO::ImageInput& input, ImageFile& 
         image.warnings.push_back(
             "the EXR envmap attribute says lat-long: OpenEXR's convention would be latlong = openexr");
     if (input.seek_subimage(1, 0)) image.warnings.push_back("the file has several images: the first was taken");
+    (void)input.geterror();  // that there is no second image is no error
     if (!input.seek_subimage(0, 0)) throw Error(ErrorKind::bad_input, "the first image cannot be read again");
 }
 
