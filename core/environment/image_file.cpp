@@ -135,6 +135,7 @@ void add_notes(const OIIO::ImageSpec& spec, OIIO::ImageInput& input, ImageFile& 
         image.warnings.push_back(
             "the EXR envmap attribute says lat-long: OpenEXR's convention would be latlong = openexr");
     if (input.seek_subimage(1, 0)) image.warnings.push_back("the file has several images: the first was taken");
+    (void)input.geterror();  // that there is no second image is no error
     if (!input.seek_subimage(0, 0)) throw Error(ErrorKind::bad_input, "the first image cannot be read again");
 }
 
@@ -156,7 +157,8 @@ void read_pixels(const Source& source, const OIIO::ImageSpec& spec, Progress& pr
     for (int begin = 0; begin < spec.height; begin += step) {
         progress.check();
         const int end = std::min(spec.height, begin + step);
-        if (!read_rows(source, spec, begin, end, rows))
+        // Some readers (TIFF cut short) report success and leave an error behind.
+        if (!read_rows(source, spec, begin, end, rows) || source.input->has_error())
             source.fail("rows " + std::to_string(begin) + " to " + std::to_string(end - 1) +
                         " cannot be decoded: " + source.input->geterror());
         Vec3f* pixel = image.pixels.data() + std::size_t(begin) * spec.width;

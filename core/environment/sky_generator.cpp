@@ -40,18 +40,22 @@ public:
 
 private:
     double corner(std::int64_t x, std::int64_t y, std::int64_t z) const {
-        const auto mixed = static_cast<std::uint64_t>(x * 73856093 ^ y * 19349663 ^ z * 83492791);
+        const auto mixed = static_cast<std::uint64_t>((x * 73856093) ^ (y * 19349663) ^ (z * 83492791));
         return Random(seed_ ^ mixed).next();
     }
+    static std::int64_t below(double v) {
+        const auto truncated = static_cast<std::int64_t>(v);
+        return truncated - (v < static_cast<double>(truncated));
+    }
+    static double ease(double t) { return t * t * (3 - 2 * t); }
     double at(const Vec3d& p) const {
-        const double fx = std::floor(p.x), fy = std::floor(p.y), fz = std::floor(p.z);
-        const double u = smoothstep(0, 1, p.x - fx), v = smoothstep(0, 1, p.y - fy), w = smoothstep(0, 1, p.z - fz);
-        const auto x = static_cast<std::int64_t>(fx), y = static_cast<std::int64_t>(fy),
-                   z = static_cast<std::int64_t>(fz);
+        const std::int64_t x = below(p.x), y = below(p.y), z = below(p.z);
+        const double u = ease(p.x - double(x)), v = ease(p.y - double(y)), w = ease(p.z - double(z));
+        const auto blend = [](double a, double b, double f) { return a + (b - a) * f; };
         const auto edge = [&](int dy, int dz) {
-            return std::lerp(corner(x, y + dy, z + dz), corner(x + 1, y + dy, z + dz), u);
+            return blend(corner(x, y + dy, z + dz), corner(x + 1, y + dy, z + dz), u);
         };
-        return std::lerp(std::lerp(edge(0, 0), edge(1, 0), v), std::lerp(edge(0, 1), edge(1, 1), v), w);
+        return blend(blend(edge(0, 0), edge(1, 0), v), blend(edge(0, 1), edge(1, 1), v), w);
     }
     std::uint64_t seed_;
 };
@@ -98,8 +102,15 @@ Scene make_scene(Sky sky, std::uint64_t seed) {
     return scene;
 }
 
+constexpr double haze = 0.01;  // the sine of elevation within which ground and sky blend
+
+Vec3d ground(const Scene& scene, const Vec3d& d, const Vec3d& colour) {
+    return d.y < haze ? colour * (0.5 + scene.noise.clouds(d * 9)) : Vec3d();
+}
+
 Vec3d sunny(const Scene& scene, const Vec3d& d) {
-    const Vec3d ground = Vec3d{0.20, 0.17, 0.12} * (0.5 + scene.noise.clouds(d * 9));
+    const Vec3d below = ground(scene, d, {0.20, 0.17, 0.12});
+    if (d.y <= -haze) return below;
     const double height = std::max(d.y, 0.0);
     Vec3d air = mix({0.75, 0.85, 0.95}, {0.12, 0.27, 0.65}, std::sqrt(height));
     const double to_sun = std::max(dot(d, scene.sun), 0.0);
@@ -107,15 +118,16 @@ Vec3d sunny(const Scene& scene, const Vec3d& d) {
     const Vec3d overhead = d * (1.5 / (height + 0.25));
     const double cover = smoothstep(0.50, 0.68, scene.noise.clouds(overhead));
     const Vec3d cloud = Vec3d{1.0, 1.0, 1.02} * (0.7 + 0.6 * std::pow(to_sun, 4));
-    return mix(ground, mix(air, cloud, 0.9 * cover), smoothstep(-0.01, 0.01, d.y));
+    return mix(below, mix(air, cloud, 0.9 * cover), smoothstep(-haze, haze, d.y));
 }
 
 Vec3d overcast(const Scene& scene, const Vec3d& d) {
-    const Vec3d ground = Vec3d{0.16, 0.15, 0.13} * (0.5 + scene.noise.clouds(d * 9));
+    const Vec3d below = ground(scene, d, {0.16, 0.15, 0.13});
+    if (d.y <= -haze) return below;
     const double cie = (1 + 2 * std::max(d.y, 0.0)) / 3;
     const double thickness = scene.noise.clouds(d * (2.0 / (std::max(d.y, 0.0) + 0.3)));
     const Vec3d sky = Vec3d{0.95, 0.98, 1.04} * (1.3 * cie * (0.4 + 1.2 * thickness));
-    return mix(ground, sky, smoothstep(-0.01, 0.01, d.y));
+    return mix(below, sky, smoothstep(-haze, haze, d.y));
 }
 
 Vec3d studio(const Scene& scene, const Vec3d& d) {

@@ -46,7 +46,7 @@ struct IrradianceMaps {
     std::vector<MapStatistics> specular_statistics;
 
     /// Real SH coefficients of the environment in the world frame, [bands * bands] in the order l*l + l + m of spec
-    /// section 0. `exact` gives 8 bands, which keeps it cheap; `sh` 8 or as many as it used.
+    /// section 0. `exact` gives 8 bands, which keeps it cheap; `sh` as many as it used, 8 to 32.
     std::vector<Vec3d> environment_sh;
     int environment_sh_bands = 0;
 

@@ -17,6 +17,7 @@ using std::numbers::pi;
 namespace {
 
 constexpr int most_bands = 128;
+constexpr int most_reported_bands = 32;  // turning coefficients costs bands^4
 constexpr double sampling_margin = 1.1;
 
 // The kernels of one group of maps (the diffuse one, or all specular ones) by band.
@@ -202,7 +203,8 @@ void bake_sh_maps(const EnvironmentMap& map, const IrradianceSettings& settings,
         maps.specular_statistics[m].clamped_negative_mass =
             remove_negative(maps.specular[m], solid_angles, settings.clamp_negative);
 
-    maps.environment_sh_bands = std::max({report_bands, maps.sh_bands_diffuse, maps.sh_bands_specular});
+    const int used = std::max(maps.sh_bands_diffuse, maps.sh_bands_specular);
+    maps.environment_sh_bands = std::max(report_bands, std::min(used, most_reported_bands));
     const std::size_t count = std::size_t(maps.environment_sh_bands) * maps.environment_sh_bands;
     maps.environment_sh =
         rotate_sh(std::span(environment.coefficients).first(count), maps.environment_sh_bands, to_world);

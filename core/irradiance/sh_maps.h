@@ -10,7 +10,8 @@
 namespace hairbake {
 
 /// Fills diffuse, specular, their clamped_negative_mass, the bands used, the predicted errors and the environment's
-/// coefficients (world, at least `report_bands`) of `maps`, whose face_size and exponent are set.
+/// coefficients (world, as many bands as used, but `report_bands` to 32) of `maps`, whose face_size and exponent are
+/// set.
 ///
 /// Every Kajiya-Kay kernel is zonal about t, so map_lm = lambda_l * environment_lm (Funk-Hecke; the transfer matrix of
 /// Xing 2012, equation 11, is diagonal; spec, section 4).
