@@ -68,8 +68,7 @@ BENCHMARK(openvdb_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
 void lay_out_one_axis(benchmark::State& state) {
     Groom& groom = Groom::get();
     for (auto _ : state)
-        benchmark::DoNotOptimize(
-            make_slice_layout(groom.strands, groom.frame, groom.sorted, groom.bricks, 1, groom.progress));
+        benchmark::DoNotOptimize(make_slice_layout(groom.frame, groom.sorted, groom.bricks, 1, groom.progress));
     per_vertex(state);
 }
 BENCHMARK(lay_out_one_axis)->Unit(benchmark::kMillisecond)->UseRealTime();
@@ -77,8 +76,7 @@ BENCHMARK(lay_out_one_axis)->Unit(benchmark::kMillisecond)->UseRealTime();
 /// One thread; items are vertex-directions.
 void sweep_four_directions(benchmark::State& state) {
     Groom& groom = Groom::get();
-    const SliceLayout layout =
-        make_slice_layout(groom.strands, groom.frame, groom.sorted, groom.bricks, 1, groom.progress);
+    const SliceLayout layout = make_slice_layout(groom.frame, groom.sorted, groom.bricks, 1, groom.progress);
     const std::vector<Vec3d> directions{normalized(Vec3d(0.1, 1, 0.2)), normalized(Vec3d(-0.5, 1, 0.3)),
                                         normalized(Vec3d(0.7, 1, -0.6)), normalized(Vec3d(-0.2, 1, -0.9))};
     SweepScratch scratch;
