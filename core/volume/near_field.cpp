@@ -146,15 +146,17 @@ float grid_depth(const Neighborhood& near, int voxel, const NearFieldWindow& win
     return hn::GetLane(hn::SumOfLanes(d, sum));
 }
 
-void correct_vertices(const StrandGeometry& strands, const GridFrame& frame, std::span<const std::uint32_t> vertices,
-                      const Neighborhood& near, const NearFieldWindow& window, std::span<const AngularMean> means,
-                      std::span<float> corrected) {
+/// Corrects the vertices of one brick, [first, last) of `sorted`.
+void correct_vertices(const StrandGeometry& strands, const GridFrame& frame, const SortedStrands& sorted,
+                      std::size_t first, std::size_t last, const Neighborhood& near, const NearFieldWindow& window,
+                      std::span<const AngularMean> means, std::span<float> corrected) {
     Reaching pieces;
-    for (const std::uint32_t v : vertices) {
-        const AngularMean& mean = means[v];
+    for (std::size_t place = first; place < last; ++place) {
+        const std::uint32_t v = sorted.vertices[place];
+        const AngularMean& mean = means[place];
         corrected[v] = mean.average;
         if (!(mean.average > 0)) continue;
-        const Vec3f x = frame.to_grid(strands.positions[v]) - near.corner;
+        const Vec3f x = sorted.vertex_positions[place] - near.corner;
         const AdjacentSegments own = adjacent_segments(strands, v);
         const int i = Neighborhood::cell_of(x.x), j = Neighborhood::cell_of(x.y), k = Neighborhood::cell_of(x.z);
         float exact = 0;
@@ -192,11 +194,11 @@ std::vector<float> correct_near_field(const StrandGeometry& strands, const GridF
         progress.check();
         Neighborhood near;
         for (std::size_t b = begin; b < end; ++b) {
-            const std::span<const std::uint32_t> vertices(sorted.vertices.data() + sorted.vertex_begin[b],
-                                                          sorted.vertex_begin[b + 1] - sorted.vertex_begin[b]);
-            if (vertices.empty()) continue;
+            const std::size_t first = sorted.vertex_begin[b], last = sorted.vertex_begin[b + 1];
+            if (first == last) continue;
             near.collect(frame, sorted, bricks, b);
-            HWY_DYNAMIC_DISPATCH(correct_vertices)(strands, frame, vertices, near, window, means, corrected);
+            HWY_DYNAMIC_DISPATCH(correct_vertices)
+            (strands, frame, sorted, first, last, near, window, means, corrected);
         }
     });
     return corrected;

@@ -20,7 +20,8 @@ struct AngularMean {
     Vec3f slope;    ///< 3 * mean of T l
 };
 
-/// Corrected average transmittance of every vertex ([V], from `means` [V]): A exp(F_grid - F_exact + own), at most 1.
+/// Corrected average transmittance of every vertex ([V], in the model's order, from `means` [V] in the order of
+/// `sorted`): A exp(F_grid - F_exact + own), at most 1.
 ///
 /// F is the mean over directions, weighted with T(l) / A, of the optical depth within the window q(d) = (1 - d^2 /
 /// r^2)^2, r = 0.75 voxels: F_exact of the strand pieces (in closed form along each piece; the vertex's adjacent

@@ -13,6 +13,9 @@ constexpr std::size_t kVectorPadding = 16;
 int brick_step(int local) { return local == 0 ? -1 : local == 9 ? 1 : 0; }
 int inner(int local) { return (local + 7) & 7; }
 
+/// Whether a piece is longer than half a voxel and goes in as two halves.
+bool is_halved(const StrandPiece& piece) { return dot(piece.step, piece.step) > 0.25f; }
+
 }  // namespace
 
 void Neighborhood::collect(const GridFrame& frame, const SortedStrands& sorted, const ExtinctionBricks& bricks,
@@ -43,49 +46,59 @@ void Neighborhood::find_places(const GridFrame& frame, const SortedStrands& sort
         }
 }
 
-void Neighborhood::collect_pieces(const SortedStrands& sorted) {
-    halves_.clear();
-    for (const Place& place : places_)
-        for (const StrandPiece& piece : sorted.pieces_in(place.slot, place.voxel)) add_halves(piece);
-    sort_halves();
-}
-
-void Neighborhood::add_halves(const StrandPiece& piece) {
-    const auto add = [&](const Vec3f& centre, const Vec3f& step) {
-        const Vec3f local = centre - corner;
+template <class Visit>
+void Neighborhood::for_each_half(const StrandPiece& piece, const Visit& visit) const {
+    const auto offer = [&](const Vec3f& local) {
         const int i = cell_of(local.x), j = cell_of(local.y), k = cell_of(local.z);
         if (i < 0 || j < 0 || k < 0 || i >= cell_side || j >= cell_side || k >= cell_side) return;
-        halves_.push_back({{local, step, piece.weight, piece.segment}, cell(i, j, k)});
+        visit(local, static_cast<std::size_t>(cell(i, j, k)));
     };
-    if (dot(piece.step, piece.step) <= 0.25f) return add(piece.centre, piece.step);
-    add(piece.centre - 0.25f * piece.step, 0.5f * piece.step);
-    add(piece.centre + 0.25f * piece.step, 0.5f * piece.step);
+    const Vec3f local = piece.centre - corner, quarter = 0.25f * piece.step;
+    if (!is_halved(piece)) return offer(local);
+    offer(local - quarter);
+    offer(local + quarter);
 }
 
-void Neighborhood::sort_halves() {
+/// Sorts by counting: once over the pieces for the cells' sizes, once to store.
+void Neighborhood::collect_pieces(const SortedStrands& sorted) {
     begin.fill(0);
-    for (const Half& half : halves_) ++begin[static_cast<std::size_t>(half.cell) + 1];
+    for (const Place& place : places_)
+        for (const StrandPiece& piece : sorted.pieces_in(place.slot, place.voxel))
+            for_each_half(piece, [&](const Vec3f&, std::size_t cell) { ++begin[cell + 1]; });
     for (std::size_t c = 0; c < cells; ++c) begin[c + 1] += begin[c];
-    const std::size_t size = halves_.size() + kVectorPadding;
-    for (auto* array : {&centre_x, &centre_y, &centre_z, &axis_x, &axis_y, &axis_z, &half_length, &weight})
-        if (array->size() < size) array->resize(size);
-    if (segment.size() < size) segment.resize(size);
-    for (const Half& half : halves_) {  // moves begin[c] to the end of cell c; shifted back below
-        const std::uint32_t at = begin[static_cast<std::size_t>(half.cell)]++;
-        const float step_length = length(half.piece.step);
-        const Vec3f axis = half.piece.step / step_length;
-        centre_x[at] = half.piece.centre.x;
-        centre_y[at] = half.piece.centre.y;
-        centre_z[at] = half.piece.centre.z;
-        axis_x[at] = axis.x;
-        axis_y[at] = axis.y;
-        axis_z[at] = axis.z;
-        half_length[at] = 0.5f * step_length;
-        weight[at] = half.piece.weight;
-        segment[at] = static_cast<std::int32_t>(half.piece.segment);
-    }
+    reserve(begin[cells]);
+    // Storing moves begin[c] to the end of cell c, which is the beginning of the next.
+    for (const Place& place : places_)
+        for (const StrandPiece& piece : sorted.pieces_in(place.slot, place.voxel)) {
+            const float step_length = length(piece.step);
+            const Vec3f axis = piece.step / step_length;
+            const float half = step_length * (is_halved(piece) ? 0.25f : 0.5f);
+            for_each_half(
+                piece, [&](const Vec3f& local, std::size_t cell) { store(piece, local, axis, half, begin[cell]++); });
+        }
     std::copy_backward(begin.begin(), begin.end() - 1, begin.end());
     begin[0] = 0;
+}
+
+void Neighborhood::reserve(std::size_t count) {
+    const std::size_t size = count + kVectorPadding;
+    if (segment.size() >= size) return;
+    for (auto* array : {&centre_x, &centre_y, &centre_z, &axis_x, &axis_y, &axis_z, &half_length, &weight})
+        array->resize(size + size / 2);
+    segment.resize(size + size / 2);
+}
+
+void Neighborhood::store(const StrandPiece& piece, const Vec3f& local, const Vec3f& axis, float half,
+                         std::uint32_t at) {
+    centre_x[at] = local.x;
+    centre_y[at] = local.y;
+    centre_z[at] = local.z;
+    axis_x[at] = axis.x;
+    axis_y[at] = axis.y;
+    axis_z[at] = axis.z;
+    half_length[at] = half;
+    weight[at] = piece.weight;
+    segment[at] = static_cast<std::int32_t>(piece.segment);
 }
 
 void Neighborhood::collect_tensors(const ExtinctionBricks& bricks) {

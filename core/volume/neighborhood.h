@@ -47,19 +47,17 @@ private:
     struct Place {
         std::uint32_t slot, voxel, local;  ///< brick number, voxel in it, voxel in this neighborhood
     };
-    struct Half {
-        StrandPiece piece;  ///< a piece or half of one, grid space
-        std::int32_t cell;
-    };
 
     void find_places(const GridFrame& frame, const SortedStrands& sorted, const std::array<int, 3>& brick);
     void collect_pieces(const SortedStrands& sorted);
-    void add_halves(const StrandPiece& piece);
-    void sort_halves();
+    /// Calls visit(local position, cell) for the one or two halves of a piece that lie in this neighborhood.
+    template <class Visit>
+    void for_each_half(const StrandPiece& piece, const Visit& visit) const;
+    void reserve(std::size_t count);
+    void store(const StrandPiece& piece, const Vec3f& local, const Vec3f& axis, float half, std::uint32_t at);
     void collect_tensors(const ExtinctionBricks& bricks);
 
     std::vector<Place> places_;  ///< voxels of the brick and its halo that hold something
-    std::vector<Half> halves_;
 };
 
 }  // namespace hairbake

@@ -68,14 +68,13 @@ void copy_tensors(const ExtinctionBricks& bricks, const std::vector<std::array<s
 }
 
 /// Number of the first slot of slice k of each brick, after the slots of the bricks before it in that slice.
-std::vector<std::array<std::uint32_t, 8>> place_slots(const StrandGeometry& strands, const GridFrame& frame,
-                                                      const SortedStrands& sorted, SliceLayout& layout) {
+std::vector<std::array<std::uint32_t, 8>> place_slots(const GridFrame& frame, const SortedStrands& sorted,
+                                                      SliceLayout& layout) {
     std::vector<std::array<std::uint32_t, 8>> slots(sorted.brick_count());
     parallel_for(slots.size(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b)
             for (std::uint32_t i = sorted.vertex_begin[b]; i < sorted.vertex_begin[b + 1]; ++i)
-                ++slots[b][static_cast<std::size_t>(frame.to_grid(strands.positions[sorted.vertices[i]])[layout.axis]) &
-                           7];
+                ++slots[b][static_cast<std::size_t>(sorted.vertex_positions[i][layout.axis]) & 7];
     });
     std::vector<std::uint32_t> count(static_cast<std::size_t>(layout.slices));
     for (std::size_t b = 0; b < slots.size(); ++b) {
@@ -110,14 +109,12 @@ void resize_slots(SliceLayout& layout) {
             layout.slot_s[slot] = static_cast<float>(s);
 }
 
-void fill_slots(const StrandGeometry& strands, const GridFrame& frame, const SortedStrands& sorted,
-                const std::vector<std::array<std::uint32_t, 8>>& tile_of,
+void fill_slots(const SortedStrands& sorted, const std::vector<std::array<std::uint32_t, 8>>& tile_of,
                 std::vector<std::array<std::uint32_t, 8>> next, SliceLayout& layout) {
     parallel_for(next.size(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b)
             for (std::uint32_t i = sorted.vertex_begin[b]; i < sorted.vertex_begin[b + 1]; ++i) {
-                const std::uint32_t vertex = sorted.vertices[i];
-                const Vec3f g = frame.to_grid(strands.positions[vertex]);
+                const Vec3f& g = sorted.vertex_positions[i];
                 const auto s = static_cast<std::size_t>(g[layout.axis]);
                 const std::uint32_t slot = next[b][s & 7]++;
                 layout.slot_u[slot] = g[layout.axis_u];
@@ -126,15 +123,15 @@ void fill_slots(const StrandGeometry& strands, const GridFrame& frame, const Sor
                 const auto texel = static_cast<std::uint32_t>((static_cast<int>(g[layout.axis_v]) & 7) * 8 +
                                                               (static_cast<int>(g[layout.axis_u]) & 7));
                 layout.slot_texel[slot] = SliceLayout::tile_texels * (tile_of[b][s & 7] - layout.tile_begin[s]) + texel;
-                layout.slot_vertex[slot] = vertex;
+                layout.slot_vertex[slot] = i;
             }
     });
 }
 
 }  // namespace
 
-SliceLayout make_slice_layout(const StrandGeometry& strands, const GridFrame& frame, const SortedStrands& sorted,
-                              const ExtinctionBricks& bricks, int axis, Progress& progress) {
+SliceLayout make_slice_layout(const GridFrame& frame, const SortedStrands& sorted, const ExtinctionBricks& bricks,
+                              int axis, Progress& progress) {
     SliceLayout layout;
     layout.axis = axis;
     layout.axis_u = axis == 0 ? 1 : 0;
@@ -145,9 +142,9 @@ SliceLayout make_slice_layout(const StrandGeometry& strands, const GridFrame& fr
     const auto tile_of = place_tiles(frame, sorted, layout);
     copy_tensors(bricks, tile_of, layout);
     progress.check();
-    auto slots = place_slots(strands, frame, sorted, layout);
+    auto slots = place_slots(frame, sorted, layout);
     resize_slots(layout);
-    fill_slots(strands, frame, sorted, tile_of, std::move(slots), layout);
+    fill_slots(sorted, tile_of, std::move(slots), layout);
     return layout;
 }
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/base/progress.h"
-#include "core/hair/strand_geometry.h"
 #include "core/volume/extinction_bricks.h"
 #include "core/volume/grid_frame.h"
 #include "core/volume/strand_pieces.h"
@@ -36,10 +35,10 @@ struct SliceLayout {
     std::vector<std::uint32_t> slot_begin;      ///< [slices + 1]
     std::vector<float> slot_u, slot_v, slot_s;  ///< vertex position in grid space along u, v and the axis
     std::vector<std::uint32_t> slot_texel;      ///< 64 * (tile - first tile of the slice) + texel
-    std::vector<std::uint32_t> slot_vertex;     ///< index of the model's point, or no_vertex
+    std::vector<std::uint32_t> slot_vertex;     ///< index into SortedStrands::vertices, or no_vertex
 };
 
-SliceLayout make_slice_layout(const StrandGeometry& strands, const GridFrame& frame, const SortedStrands& sorted,
-                              const ExtinctionBricks& bricks, int axis, Progress& progress);
+SliceLayout make_slice_layout(const GridFrame& frame, const SortedStrands& sorted, const ExtinctionBricks& bricks,
+                              int axis, Progress& progress);
 
 }  // namespace hairbake

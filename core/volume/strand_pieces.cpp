@@ -39,12 +39,11 @@ void for_each_piece(const StrandGeometry& strands, const GridFrame& frame, std::
     }
 }
 
-/// Calls visit(vertex, brick) for every vertex in [begin, end).
+/// Calls visit(vertex, position in grid space) for every vertex in [begin, end).
 template <class Visit>
 void for_each_vertex(const StrandGeometry& strands, const GridFrame& frame, std::size_t begin, std::size_t end,
                      const Visit& visit) {
-    for (std::size_t v = begin; v < end; ++v)
-        visit(static_cast<std::uint32_t>(v), frame.brick_at(frame.to_grid(strands.positions[v])));
+    for (std::size_t v = begin; v < end; ++v) visit(static_cast<std::uint32_t>(v), frame.to_grid(strands.positions[v]));
 }
 
 /// Runs body(chunk, begin, end) for the chunks of the model's points.
@@ -65,7 +64,8 @@ void count_items(const StrandGeometry& strands, const GridFrame& frame, Counts& 
         vertex_count.assign(frame.brick_count(), 0);
         for_each_piece(strands, frame, begin, end,
                        [&](const StrandPiece&, std::uint32_t brick) { ++piece_count[brick]; });
-        for_each_vertex(strands, frame, begin, end, [&](std::uint32_t, std::uint32_t brick) { ++vertex_count[brick]; });
+        for_each_vertex(strands, frame, begin, end,
+                        [&](std::uint32_t, const Vec3f& position) { ++vertex_count[frame.brick_at(position)]; });
     });
     for (Counts* counts : {&pieces, &vertices}) std::erase_if(*counts, [](const auto& chunk) { return chunk.empty(); });
 }
@@ -105,14 +105,18 @@ void place_items(const StrandGeometry& strands, const GridFrame& frame, Counts& 
                  SortedStrands& sorted) {
     sorted.pieces.resize(sorted.piece_begin.back());
     sorted.vertices.resize(sorted.vertex_begin.back());
+    sorted.vertex_positions.resize(sorted.vertex_begin.back());
     for_each_chunk(strands, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
         auto& piece_place = piece_places[chunk];
         auto& vertex_place = vertex_places[chunk];
         for_each_piece(strands, frame, begin, end, [&](const StrandPiece& piece, std::uint32_t brick) {
             sorted.pieces[piece_place[brick]++] = piece;
         });
-        for_each_vertex(strands, frame, begin, end,
-                        [&](std::uint32_t v, std::uint32_t brick) { sorted.vertices[vertex_place[brick]++] = v; });
+        for_each_vertex(strands, frame, begin, end, [&](std::uint32_t v, const Vec3f& position) {
+            const std::uint32_t place = vertex_place[frame.brick_at(position)]++;
+            sorted.vertices[place] = v;
+            sorted.vertex_positions[place] = position;
+        });
     });
 }
 

@@ -37,6 +37,7 @@ struct SortedStrands {
     std::vector<std::uint32_t> voxel_end;     ///< [B * 512] end of a voxel's pieces, index into `pieces`
     std::vector<std::uint32_t> vertex_begin;  ///< [B + 1]
     std::vector<std::uint32_t> vertices;      ///< [V], indices of the model's points
+    std::vector<Vec3f> vertex_positions;      ///< [V], of `vertices`, grid space
 
     std::size_t brick_count() const { return bricks.size(); }
 

@@ -45,7 +45,8 @@ std::vector<std::vector<Vec3d>> group_directions(std::span<const Vec3d> directio
     return groups;
 }
 
-/// Sums over the directions of every axis, by vertex: [V * SweepSums::components], as integers of the same scale.
+/// Sums over the directions of every axis, by vertex in the order of SortedStrands: [V * SweepSums::components], as
+/// integers of the same scale.
 class VertexSums {
 public:
     explicit VertexSums(std::size_t vertex_count) : values_(vertex_count * SweepSums::components) {}
@@ -96,17 +97,17 @@ void sweep_axis(const SliceLayout& layout, std::span<const std::vector<Vec3d>> g
     total.add(layout, sums);
 }
 
-std::vector<AngularMean> sweep_all(const StrandGeometry& strands, const GridFrame& frame, const SortedStrands& sorted,
-                                   const ExtinctionBricks& bricks, std::span<const Vec3d> directions,
-                                   Progress& progress) {
+/// [V], in the order of SortedStrands.
+std::vector<AngularMean> sweep_all(const GridFrame& frame, const SortedStrands& sorted, const ExtinctionBricks& bricks,
+                                   std::span<const Vec3d> directions, Progress& progress) {
     const int count = static_cast<int>(directions.size());
     const float scale = sweep_scale(count);
-    VertexSums total(strands.vertex_count());
+    VertexSums total(sorted.vertices.size());
     std::atomic<std::size_t> done{0};
     for (int axis = 0; axis < 3; ++axis) {
         const auto groups = group_directions(directions, axis);
         if (groups.empty()) continue;
-        const SliceLayout layout = make_slice_layout(strands, frame, sorted, bricks, axis, progress);
+        const SliceLayout layout = make_slice_layout(frame, sorted, bricks, axis, progress);
         const auto swept = [&](std::size_t n) {
             progress.report("transmittance", 0.3 + 0.4 * static_cast<double>(done += n) / count);
         };
@@ -139,7 +140,7 @@ Transmittance bake_transmittance_volume(const StrandGeometry& strands, const Tra
     result.density = std::make_shared<const DensityGrid>(frame, sorted, bricks);
     result.occupied_voxels = result.density->occupied_voxels();
 
-    const auto means = sweep_all(strands, frame, sorted, bricks, directions, progress);
+    const auto means = sweep_all(frame, sorted, bricks, directions, progress);
     result.average = correct_near_field(strands, frame, sorted, bricks, means, progress);
     progress.report("transmittance", 1);
     return result;
