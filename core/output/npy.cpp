@@ -2,9 +2,9 @@
 
 #include <bit>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <fstream>
-#include <regex>
 #include <system_error>
 
 #include "core/base/error.h"
@@ -33,16 +33,23 @@ std::string read_dictionary(std::ifstream& stream, const std::filesystem::path& 
     return dictionary;
 }
 
+/// The numbers between the parentheses of the shape; the rest of the dictionary is one fixed text.
 std::vector<std::size_t> parse_shape(const std::string& dictionary, const std::filesystem::path& file) {
-    static const std::regex form(
-        R"(\{'descr': '<f4', 'fortran_order': False, 'shape': \(((?:[0-9]{1,12}, ?)*(?:[0-9]{1,12})?)\), \}\s*)");
-    std::smatch match;
-    if (!std::regex_match(dictionary, match, form)) refuse(file, "has the header " + dictionary.substr(0, 80));
+    constexpr std::string_view before = "{'descr': '<f4', 'fortran_order': False, 'shape': (";
+    const std::size_t end = dictionary.find("), }");
+    const bool fixed = dictionary.starts_with(before) && end != std::string::npos &&
+                       dictionary.find_first_not_of(" \n", end + 4) == std::string::npos;
+    if (!fixed) refuse(file, "has the header " + dictionary.substr(0, 80));
     std::vector<std::size_t> shape;
-    const std::string numbers = match[1];
-    static const std::regex number("[0-9]+");
-    for (std::sregex_iterator it(numbers.begin(), numbers.end(), number), end; it != end; ++it)
-        shape.push_back(std::stoull(it->str()));
+    for (std::size_t i = before.size(); i < end;) {
+        std::size_t value = 0;
+        const auto [stop, error] = std::from_chars(dictionary.data() + i, dictionary.data() + end, value);
+        if (error != std::errc()) refuse(file, "has a shape that is no list of numbers");
+        shape.push_back(value);
+        i = static_cast<std::size_t>(stop - dictionary.data());
+        if (i < end && dictionary[i] != ',') refuse(file, "has a shape that is no list of numbers");
+        while (i < end && (dictionary[i] == ',' || dictionary[i] == ' ')) ++i;
+    }
     return shape;
 }
 

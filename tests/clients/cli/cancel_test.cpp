@@ -14,12 +14,15 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Whether the process has blocked SIGINT: from then on a signal is seen to, before that it ends the program as it
-/// ends any other (loading the shared libraries takes a while).
+/// Whether hairbake runs there and has blocked SIGINT and SIGTERM, and these alone: from then on a signal is seen to.
+/// Before that it ends the program as it ends any other; a library that starts up blocks all signals for a moment.
 bool is_ready(pid_t child) {
+    constexpr unsigned long long blocked = (1ull << (SIGINT - 1)) | (1ull << (SIGTERM - 1));
     std::ifstream status("/proc/" + std::to_string(child) + "/status");
-    for (std::string word; status >> word;)
-        if (word == "SigBlk:" && status >> word) return std::stoull(word, nullptr, 16) & (1ull << (SIGINT - 1));
+    std::string word, name;
+    status >> word >> name;
+    while (status >> word)
+        if (word == "SigBlk:" && status >> word) return name == "hairbake" && std::stoull(word, nullptr, 16) == blocked;
     return false;
 }
 
