@@ -1,10 +1,12 @@
 #include "core/irradiance/interpolation_bound.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
+#include "core/base/parallel.h"
 #include "core/environment/cube_map.h"
 #include "core/fiber/kajiya_kay.h"
 #include "core/irradiance/kernel_sum.h"
@@ -19,19 +21,25 @@ constexpr int tangent_size = 16;
 constexpr int samples = 4096;  // of the sum of angles, over [0, 2 pi]
 constexpr double sample_step = 2 * pi / samples;
 
-// Largest error of interpolating one light's kernel over the positions f between two maps; `sum` = theta + theta'_m.
+// Positions between two maps at which the error is looked at: evenly for smooth lobes (16 miss the peak of a parabola
+// by at most 0.4 %), and next to the ends, where the error of a lobe with a jump (p near 0) is largest.
+constexpr std::array<double, 17> positions{0.001,  0.0625, 0.125,  0.1875, 0.25,   0.3125, 0.375,  0.4375, 0.5,
+                                           0.5625, 0.625,  0.6875, 0.75,   0.8125, 0.875,  0.9375, 0.999};
+
+// Largest error of interpolating one light's kernel over the positions between two maps; `sum` = theta + theta'_m.
 std::vector<double> worst_error_by_sum(double exponent, double spacing) {
-    constexpr int positions = 64;
     std::vector<double> worst(samples + 1);
-    for (int i = 0; i <= samples; ++i) {
-        const double sum = i * sample_step;
-        const double low = kajiya_kay_specular(sum, 0, exponent), high = kajiya_kay_specular(sum, spacing, exponent);
-        for (int k = 0; k <= positions; ++k) {
-            const double f = k / double(positions);
-            const double truth = kajiya_kay_specular(sum, f * spacing, exponent);
-            worst[i] = std::max(worst[i], std::abs((1 - f) * low + f * high - truth));
+    parallel_for(worst.size(), 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const double sum = double(i) * sample_step;
+            const double low = kajiya_kay_specular(sum, 0, exponent),
+                         high = kajiya_kay_specular(sum, spacing, exponent);
+            for (const double f : positions) {
+                const double truth = kajiya_kay_specular(sum, f * spacing, exponent);
+                worst[i] = std::max(worst[i], std::abs((1 - f) * low + f * high - truth));
+            }
         }
-    }
+    });
     return worst;
 }
 

@@ -49,7 +49,7 @@ void store_texel(const Vec3f* sums, std::size_t texel, IrradianceMaps& maps) {
 
 // Sums over the lights for the tangents of faces +X, +Y and +Z, and the bound of interpolation by the way: cubes
 // coarser than 16 would make it needlessly loose and have it computed by itself.
-void bake_exact_maps(const LightSet& lights, const IrradianceSettings& settings, const Progress& progress,
+void bake_exact_maps(const LightSet& lights, const IrradianceSettings& settings, Progress& progress,
                      IrradianceMaps& maps) {
     const int n = maps.face_size, count = settings.specular_maps;
     KernelTable table = kajiya_kay_table(settings.exponent, count);
@@ -69,6 +69,7 @@ void bake_exact_maps(const LightSet& lights, const IrradianceSettings& settings,
                 for (int channel = 0; channel < 3; ++channel)
                     bound[channel] = std::max(bound[channel], double(row[k][channel]));
         }
+        progress.report("irradiance", 0.2 + 0.2 * (face / 2 + 1));
     }
     maps.interpolation_bound = n >= 16 ? bound : interpolation_bound(lights, settings.exponent, count, progress);
 }
