@@ -5,6 +5,7 @@
 
 #include "clients/cli/commands.h"
 #include "clients/cli/exit_code.h"
+#include "clients/cli/messages.h"
 #include "clients/cli/progress_display.h"
 #include "clients/cli/signal_watch.h"
 #include "core/bake.h"
@@ -119,7 +120,7 @@ std::string summary(const BakeResult& result, const std::string& folder) {
 }
 
 void tell_done(const BakeResult& result, const Options& options) {
-    for (const std::string& warning : result.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    for (const std::string& warning : result.warnings) say_warning(warning);
     if (options.progress == "json")
         std::printf("{\"event\":\"done\",\"folder\":%s,\"id\":%s}\n", json_string(options.folder).c_str(),
                     json_string(result.id).c_str());

@@ -3,6 +3,7 @@
 
 #include "clients/cli/commands.h"
 #include "clients/cli/exit_code.h"
+#include "clients/cli/messages.h"
 #include "clients/cli/signal_watch.h"
 #include "core/bake.h"
 
@@ -10,8 +11,8 @@ namespace {
 
 int report_failure() {
     const hairbake::Error error = hairbake::current_error();
-    std::fprintf(stderr, "hairbake: %s%s\n", error.kind() == hairbake::ErrorKind::internal ? "internal error: " : "",
-                 error.what());
+    const bool defect = error.kind() == hairbake::ErrorKind::internal;
+    hairbake::say_error(defect ? std::string("a defect of hairbake: ") + error.what() : error.what());
     return static_cast<int>(hairbake::exit_code(error.kind()));
 }
 

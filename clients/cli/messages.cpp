@@ -1,0 +1,23 @@
+#include "clients/cli/messages.h"
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+namespace hairbake {
+namespace {
+
+spdlog::logger& logger() {
+    static const auto log = [] {
+        auto made = spdlog::stderr_color_mt("hairbake");
+        made->set_pattern("%n: %^%l%$: %v");
+        return made;
+    }();
+    return *log;
+}
+
+}  // namespace
+
+void say_warning(const std::string& text) { logger().warn("{}", text); }
+void say_error(const std::string& text) { logger().error("{}", text); }
+
+}  // namespace hairbake

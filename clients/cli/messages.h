@@ -1,0 +1,12 @@
+// What the command line says to people, on standard error.
+#pragma once
+
+#include <string>
+
+namespace hairbake {
+
+/// "hairbake: warning: ..." and "hairbake: error: ...", the level in colour on a terminal. Thread-safe.
+void say_warning(const std::string& text);
+void say_error(const std::string& text);
+
+}  // namespace hairbake
