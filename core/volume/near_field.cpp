@@ -146,6 +146,13 @@ float grid_depth(const Neighborhood& near, int voxel, const NearFieldWindow& win
     return hn::GetLane(hn::SumOfLanes(d, sum));
 }
 
+/// On how many sides of vertex v its strand goes on: 2, at an end 1, at a lone point none.
+float own_sides(const StrandGeometry& strands, std::uint32_t v, const AdjacentSegments& own) {
+    const bool before = own.first < v && strands.segments[own.first] == Segment::solid;
+    const bool after = strands.segments[own.last] == Segment::solid;
+    return static_cast<float>(before) + static_cast<float>(after);
+}
+
 void correct_vertices(const StrandGeometry& strands, const GridFrame& frame, std::span<const std::uint32_t> vertices,
                       const Neighborhood& near, const NearFieldWindow& window, std::span<const AngularMean> means,
                       std::span<float> corrected) {
@@ -167,8 +174,8 @@ void correct_vertices(const StrandGeometry& strands, const GridFrame& frame, std
         exact += integrate(pieces, mean.average);
         const int voxel = Neighborhood::voxel(static_cast<int>(x.x), static_cast<int>(x.y), static_cast<int>(x.z));
         const float grid = grid_depth(near, voxel, window, mean);
-        const float own_depth = NearFieldWindow::own_strand_beyond * strands.opacities[v] * strands.widths[v] /
-                                static_cast<float>(frame.voxel_size);
+        const float own_depth = own_sides(strands, v, own) * 0.5f * NearFieldWindow::own_strand_beyond *
+                                strands.opacities[v] * strands.widths[v] / static_cast<float>(frame.voxel_size);
         const float four_pi = 4 * std::numbers::pi_v<float>;
         corrected[v] = std::min(1.0f, mean.average * std::exp((grid - exact) / four_pi + own_depth));
     }
