@@ -6,20 +6,21 @@
 #include <unordered_map>
 
 #include "core/base/parallel.h"
+#include "core/reference/own_strand.h"
 
 namespace hairbake {
 namespace {
 
 /// Distance from p to the surface of a segment: to its axis, less the radius at the foot point.
 float surface_distance(const StrandGeometry& strands, std::uint32_t segment, const Vec3f& p) {
-    const Vec3f a = strands.positions[segment], axis = strands.positions[segment + 1] - a;
-    const float s = std::clamp(dot(p - a, axis) / dot(axis, axis), 0.0f, 1.0f);
-    const float radius = 0.5f * ((1 - s) * strands.widths[segment] + s * strands.widths[segment + 1]);
-    return length(p - (a + s * axis)) - radius;
+    const Vec3d a(strands.positions[segment]), axis = Vec3d(strands.positions[segment + 1]) - a, to_p = Vec3d(p) - a;
+    const double s = std::clamp(dot(to_p, axis) / dot(axis, axis), 0.0, 1.0);
+    const double width = (1 - s) * double(strands.widths[segment]) + s * double(strands.widths[segment + 1]);
+    return static_cast<float>(length(to_p - s * axis) - 0.5 * width);
 }
 
-/// The queried vertices in a lattice of cells. A vertex is listed in every cell that its reach touches, so a segment needs to look only into
-/// the cells that it passes.
+/// The queried vertices in a lattice of cells. A vertex is listed in every cell that its reach touches, so a segment
+/// needs to look only into the cells that it passes.
 class QueryCells {
 public:
     QueryCells(const StrandGeometry& strands, std::span<const std::uint32_t> vertices, float limit)
@@ -99,7 +100,8 @@ std::vector<float> distance_to_other_strands(const StrandGeometry& strands, std:
                 const Vec3f b = start + whole * (float(step + 1) / float(steps));
                 cells.for_each_query(smaller(a, b), larger(a, b), [&](std::uint32_t k) {
                     const std::uint32_t v = vertices[k];
-                    if (!adjacent_segments(strands, v).contains(segment))
+                    const AdjacentSegments own = adjacent_segments(strands, v);
+                    if (!own.contains(segment) && !enters_from_inside(strands, v, own, segment, Vec3f(0)))
                         lower(nearest[k], surface_distance(strands, segment, strands.positions[v]));
                 });
             }

@@ -2,6 +2,8 @@
 
 #include <embree3/rtcore.h>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "core/base/error.h"
@@ -16,16 +18,16 @@ bool go_on(void* progress, double fraction) {
     return !told.cancelled();
 }
 
-unsigned char joint_flags(const StrandGeometry& strands, std::uint32_t i) {
-    unsigned flags = 0;
-    if (i > 0 && strands.segments[i - 1] == Segment::solid) flags |= RTC_CURVE_FLAG_NEIGHBOR_LEFT;
-    if (strands.segments[i + 1] == Segment::solid) flags |= RTC_CURVE_FLAG_NEIGHBOR_RIGHT;
-    return static_cast<unsigned char>(flags);
+float power_of_two_scale(const StrandGeometry& strands) {
+    const Vec3f side = strands.bounds_max - strands.bounds_min;
+    const float longest = std::max({side.x, side.y, side.z});
+    return longest > 0 ? std::ldexp(1.0f, -std::clamp(std::ilogb(longest), -126, 126)) : 1.0f;
 }
 
 }  // namespace
 
-StrandScene::StrandScene(const StrandGeometry& strands, Progress& progress) : strands_(strands) {
+StrandScene::StrandScene(const StrandGeometry& strands, Progress& progress)
+    : strands_(strands), scale_(power_of_two_scale(strands)) {
     for (std::uint32_t i = 0; i < strands.vertex_count(); ++i)
         if (strands.segments[i] == Segment::solid) segment_of_.push_back(i);
     device_ = rtcNewDevice(nullptr);
@@ -61,15 +63,18 @@ void StrandScene::attach_curves() {
         rtcSetNewGeometryBuffer(curves, RTC_BUFFER_TYPE_FLAGS, 0, RTC_FORMAT_UCHAR, 1, segments));
     if (points && indices && flags) {
         for (std::size_t v = 0; v < vertices; ++v) {
-            const Vec3f& p = strands_.positions[v];
+            const Vec3f p = strands_.positions[v] * scale_;
             points[4 * v] = p.x;
             points[4 * v + 1] = p.y;
             points[4 * v + 2] = p.z;
-            points[4 * v + 3] = 0.5f * strands_.widths[v];
+            points[4 * v + 3] = 0.5f * strands_.widths[v] * scale_;
         }
         for (std::size_t k = 0; k < segments; ++k) {
             indices[k] = segment_of_[k];
-            flags[k] = joint_flags(strands_, segment_of_[k]);
+            // No neighbours: every segment has both its round ends and reports every ray that meets it. What a strand
+            // covers is the same; with neighbours Embree leaves out hits inside the next segment, so that a ray may
+            // seem to leave a strand that it is still in.
+            flags[k] = 0;
         }
         rtcCommitGeometry(curves);
         rtcAttachGeometryByID(scene_, curves, 0);

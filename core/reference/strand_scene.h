@@ -12,8 +12,8 @@ struct RTCSceneTy;
 namespace hairbake {
 
 /// Solid segments as Embree round linear curves (cones with rounded joints, thickness as diameter); degenerate segments
-/// are left out. Primitive k of geometry 0 is segment segment_of(k). Refers to `strands`, which must outlive it.
-/// Immutable after construction; may be traced from several threads.
+/// are left out. Primitive k of geometry 0 is segment segment_of(k). Embree sees the model scaled by scale(). Refers to
+/// `strands`, which must outlive it. Immutable after construction; may be traced from several threads.
 class StrandScene {
 public:
     /// Throws Error(out_of_resources), Error(cancelled), Error(internal) with Embree's words.
@@ -24,12 +24,16 @@ public:
 
     const StrandGeometry& strands() const { return strands_; }
     RTCSceneTy* scene() const { return scene_; }
+    /// A power of two that makes the longest side of the bounds 1 to 2: Embree multiplies up to four lengths, which
+    /// would leave the range of floats in a model of 1e-10 or 1e10 units.
+    float scale() const { return scale_; }
     std::uint32_t segment_of(std::uint32_t primitive) const { return segment_of_[primitive]; }
 
 private:
     void attach_curves();
 
     const StrandGeometry& strands_;
+    float scale_ = 1;
     std::vector<std::uint32_t> segment_of_;
     RTCDeviceTy* device_ = nullptr;
     RTCSceneTy* scene_ = nullptr;

@@ -146,33 +146,47 @@ float grid_depth(const Neighborhood& near, int voxel, const NearFieldWindow& win
     return hn::GetLane(hn::SumOfLanes(d, sum));
 }
 
+/// On how many sides of vertex v its strand goes on: 2, at an end 1, at a lone point none.
+float own_sides(const StrandGeometry& strands, std::uint32_t v, const AdjacentSegments& own) {
+    const bool before = own.first < v && strands.segments[own.first] == Segment::solid;
+    const bool after = strands.segments[own.last] == Segment::solid;
+    return static_cast<float>(before) + static_cast<float>(after);
+}
+
+/// F_exact of a vertex at local position x, without the factor 1 / 4 pi.
+float exact_depth(const Neighborhood& near, const Vec3f& x, const AdjacentSegments& own, const AngularMean& mean,
+                  Reaching& pieces) {
+    const int i = Neighborhood::cell_of(x.x), j = Neighborhood::cell_of(x.y), k = Neighborhood::cell_of(x.z);
+    float depth = 0;
+    pieces.count = 0;
+    for (int row_i = i - 1; row_i <= i + 1; ++row_i)
+        for (int row_j = j - 1; row_j <= j + 1; ++row_j) {
+            const auto cell = static_cast<std::size_t>(Neighborhood::cell(row_i, row_j, k));
+            depth += select(near, near.begin[cell - 1], near.begin[cell + 2], x, own, mean, pieces);
+        }
+    return depth + integrate(pieces, mean.average);
+}
+
 /// Corrects the vertices of one brick, [first, last) of `sorted`.
 void correct_vertices(const StrandGeometry& strands, const GridFrame& frame, const SortedStrands& sorted,
                       std::size_t first, std::size_t last, const Neighborhood& near, const NearFieldWindow& window,
                       std::span<const AngularMean> means, std::span<float> corrected) {
     Reaching pieces;
+    const auto own_unit = 0.5f * NearFieldWindow::own_strand_beyond / static_cast<float>(frame.voxel_size);
     for (std::size_t place = first; place < last; ++place) {
         const std::uint32_t v = sorted.vertices[place];
         const AngularMean& mean = means[place];
-        corrected[v] = mean.average;
-        if (!(mean.average > 0)) continue;
-        const Vec3f x = sorted.vertex_positions[place] - near.corner;
         const AdjacentSegments own = adjacent_segments(strands, v);
-        const int i = Neighborhood::cell_of(x.x), j = Neighborhood::cell_of(x.y), k = Neighborhood::cell_of(x.z);
-        float exact = 0;
-        pieces.count = 0;
-        for (int row_i = i - 1; row_i <= i + 1; ++row_i)
-            for (int row_j = j - 1; row_j <= j + 1; ++row_j) {
-                const auto cell = static_cast<std::size_t>(Neighborhood::cell(row_i, row_j, k));
-                exact += select(near, near.begin[cell - 1], near.begin[cell + 2], x, own, mean, pieces);
-            }
-        exact += integrate(pieces, mean.average);
-        const int voxel = Neighborhood::voxel(static_cast<int>(x.x), static_cast<int>(x.y), static_cast<int>(x.z));
-        const float grid = grid_depth(near, voxel, window, mean);
-        const float own_depth = NearFieldWindow::own_strand_beyond * strands.opacities[v] * strands.widths[v] /
-                                static_cast<float>(frame.voxel_size);
-        const float four_pi = 4 * std::numbers::pi_v<float>;
-        corrected[v] = std::min(1.0f, mean.average * std::exp((grid - exact) / four_pi + own_depth));
+        float exponent = own_sides(strands, v, own) * own_unit * strands.opacities[v] * strands.widths[v];
+        const float share = NearFieldWindow::share(mean.average);
+        if (share > 0) {
+            const Vec3f x = sorted.vertex_positions[place] - near.corner;
+            const int voxel = Neighborhood::voxel(static_cast<int>(x.x), static_cast<int>(x.y), static_cast<int>(x.z));
+            const float smeared = grid_depth(near, voxel, window, mean);
+            const float exact = exact_depth(near, x, own, mean, pieces);
+            exponent += share * (smeared - exact) / (4 * std::numbers::pi_v<float>);
+        }
+        corrected[v] = std::min(1.0f, mean.average * std::exp(exponent));
     }
 }
 

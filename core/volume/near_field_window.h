@@ -1,6 +1,7 @@
 // The window of the near-field correction and what the grid's voxels weigh in it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -18,6 +19,12 @@ struct NearFieldWindow {
     /// -ln A of a lone straight thin strand on the grid after the correction, over opacity * width / h: averaged over
     /// directions and places of the strand. tests/core/volume derives it.
     static constexpr float own_strand_beyond = 0.352f;
+
+    /// How much of the correction a vertex of average transmittance A gets: none below `dark`, all above `light`. Most
+    /// vertices of a dense groom lie in the dark and are many to a voxel; without the correction they err by no more
+    /// than a fraction of their small A, and with this the work grows with the hair that is seen, not with its square.
+    static constexpr float dark = 0.03f, light = 0.06f;
+    static float share(float average) { return std::clamp((average - dark) / (light - dark), 0.0f, 1.0f); }
 
     alignas(64) std::array<float, padded> weight{};
     alignas(64) std::array<float, padded> direction_x{}, direction_y{}, direction_z{};  ///< unit, 0 for the own voxel

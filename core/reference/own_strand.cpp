@@ -1,0 +1,45 @@
+#include "core/reference/own_strand.h"
+
+#include <algorithm>
+
+namespace hairbake {
+namespace {
+
+/// A ray that runs along its strand from joint to joint.
+class JointWalk {
+public:
+    JointWalk(const StrandGeometry& strands, std::uint32_t v, const Vec3f& l)
+        : strands_(strands), origin_(strands.positions[v]), direction_(l) {}
+
+    /// Whether the ray passes `joint` inside the strand, and not before the joint that it passed last.
+    bool passes(std::uint32_t joint) {
+        const Vec3d to_joint = Vec3d(strands_.positions[joint]) - origin_;
+        const double t = std::max(0.0, dot(to_joint, direction_));
+        if (t < passed_) return false;
+        passed_ = t;
+        constexpr double rounding = 1.0001;  // the ray tracer's and ours
+        return length(to_joint - t * direction_) <= 0.5 * rounding * double(strands_.widths[joint]);
+    }
+
+private:
+    const StrandGeometry& strands_;
+    Vec3d origin_, direction_;
+    double passed_ = 0;
+};
+
+}  // namespace
+
+bool enters_from_inside(const StrandGeometry& strands, std::uint32_t v, const AdjacentSegments& own,
+                        std::uint32_t segment, const Vec3f& l) {
+    JointWalk walk(strands, v, l);
+    if (segment > own.last) {
+        for (std::uint32_t joint = own.last + 1; joint <= segment; ++joint)
+            if (strands.segments[joint - 1] == Segment::none || !walk.passes(joint)) return false;
+        return true;
+    }
+    for (std::uint32_t joint = own.first; joint > segment; --joint)
+        if (strands.segments[joint - 1] == Segment::none || !walk.passes(joint)) return false;
+    return true;
+}
+
+}  // namespace hairbake

@@ -1,0 +1,120 @@
+#include "core/volume/grid_frame.h"
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "tests/support/strand_models.h"
+
+namespace hairbake {
+namespace {
+
+using namespace hairbake::test_support;
+
+/// A diagonal strand through the box from (0, 0, 0) to (4, 2, 1).
+StrandGeometry diagonal(double width) {
+    StrandModel model;
+    model.add(straight({0, 0, 0}, {4, 2, 1}, 19), width);
+    return model.geometry();
+}
+
+GridFrame frame_of(const StrandGeometry& strands, const TransmittanceSettings& settings, bool* bounded = nullptr) {
+    bool ignored;
+    return make_grid_frame(strands, settings, bounded ? bounded : &ignored);
+}
+
+TEST(GridFrame, DividesTheLongestSideIntoTheVoxelsAskedFor) {
+    for (const int voxels : {32, 100, 256, 1024}) {
+        bool bounded = true;
+        EXPECT_DOUBLE_EQ(frame_of(diagonal(1e-4), with_voxels(voxels), &bounded).voxel_size, 4.0 / voxels);
+        EXPECT_FALSE(bounded);
+    }
+}
+
+TEST(GridFrame, TakesAVoxelSizeInsteadOfACount) {
+    TransmittanceSettings settings = with_voxel_size(0.0625);
+    settings.voxels = 1024;
+    EXPECT_EQ(frame_of(diagonal(1e-4), settings).voxel_size, 0.0625);
+}
+
+TEST(GridFrame, KeepsVoxelsAtLeastTwiceAsLargeAsTheWidths) {
+    bool bounded = false;
+    const auto twice = [](double width) { return 2 * double(static_cast<float>(width)); };
+    EXPECT_DOUBLE_EQ(frame_of(diagonal(0.1), with_voxels(256), &bounded).voxel_size, twice(0.1));
+    EXPECT_TRUE(bounded);
+    EXPECT_DOUBLE_EQ(frame_of(diagonal(0.1), with_voxel_size(0.01), &bounded).voxel_size, twice(0.1));
+    EXPECT_TRUE(bounded);
+    EXPECT_DOUBLE_EQ(frame_of(diagonal(0.1), with_voxel_size(0.25), &bounded).voxel_size, 0.25);
+    EXPECT_FALSE(bounded);
+}
+
+TEST(GridFrame, TakesThe95thPercentileOfTheWidths) {
+    // 100 strands of two points; the 95th percentile of 200 widths is the one of rank floor(199 x 0.95) = 189 from 0.
+    for (const int wide : {4, 6}) {  // 8 and 12 wide points: ranks from 192 and from 188
+        StrandModel model;
+        for (int s = 0; s < 100; ++s) model.add(straight({0, 0.01 * s, 0}, {4, 0, 0}), s < wide ? 0.5 : 0.001);
+        bool bounded = false;
+        const double size = frame_of(model.geometry(), with_voxels(256), &bounded).voxel_size;
+        EXPECT_EQ(bounded, wide == 6);
+        EXPECT_DOUBLE_EQ(size, wide == 6 ? 1.0 : 4.0 / 256);
+    }
+}
+
+TEST(GridFrame, WarnsOfTheWidthBoundWithTheVoxelSizeThatHolds) {
+    Progress progress;
+    const Transmittance wide = bake_transmittance_volume(diagonal(0.125), with_voxels(256), progress);
+    EXPECT_EQ(wide.voxel_size, 0.25);
+    ASSERT_EQ(wide.warnings.size(), 1u);
+    EXPECT_NE(wide.warnings[0].find("0.25"), std::string::npos) << wide.warnings[0];
+    EXPECT_TRUE(bake_transmittance_volume(diagonal(0.001), with_voxels(256), progress).warnings.empty());
+}
+
+TEST(GridFrame, RefusesMoreThan1024VoxelsAndNamesTheField) {
+    EXPECT_NO_THROW(frame_of(diagonal(1e-5), with_voxel_size(4.0 / 1024)));
+    try {
+        frame_of(diagonal(1e-5), with_voxel_size(4.0 / 1026));
+        ADD_FAILURE() << "was accepted";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage);
+        EXPECT_EQ(error.field(), "transmittance.voxel_size");
+        EXPECT_NE(std::string(error.what()).find("1024"), std::string::npos) << error.what();
+    }
+}
+
+TEST(GridFrame, HoldsEveryVertexWithAVoxelOfMarginBelow) {
+    // Also where the rounding of positions is coarser than a voxel: at 1e7 floats are one apart.
+    for (const double offset : {0.0, 1.0, -7.3, 1e3, -1e5, 1e7})
+        for (const int voxels : {32, 253, 256, 1024}) {
+            Random random(1);
+            StrandModel model;
+            for (int k = 0; k < 200; ++k)
+                model.add({random_point_in_box(random, Vec3d(-1), Vec3d(1)) + Vec3d(offset, -offset, offset)}, 1e-6);
+            model.add_box(Vec3d(-1) + Vec3d(offset, -offset, offset), Vec3d(1) + Vec3d(offset, -offset, offset));
+            const StrandGeometry strands = model.geometry();
+            const GridFrame frame = frame_of(strands, with_voxels(voxels));
+            for (const Vec3f& p : strands.positions)
+                for (int axis = 0; axis < 3; ++axis) {
+                    const float g = frame.to_grid(p)[axis];
+                    // A margin that a float at this offset can express.
+                    EXPECT_GE(g, std::abs(offset) < 1e4 ? 0.9f : 0.0f);
+                    EXPECT_LT(g, static_cast<float>(frame.voxels(axis)));
+                }
+        }
+}
+
+TEST(GridFrame, NumbersBricksAndVoxelsAsOpenVdbDoes) {
+    GridFrame frame;
+    frame.bricks = {3, 5, 7};
+    std::uint32_t expected = 0;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 5; ++j)
+            for (int k = 0; k < 7; ++k, ++expected) {
+                EXPECT_EQ(frame.brick_of(8 * i + 7, 8 * j, 8 * k + 3), expected);
+                EXPECT_EQ(frame.brick_at(Vec3f(8 * i + 7.9f, 8.0f * j, 8 * k + 3.5f)), expected);
+                EXPECT_EQ(frame.brick_coordinates(expected), (std::array{i, j, k}));
+            }
+    EXPECT_EQ(frame.brick_count(), expected);
+    EXPECT_EQ(GridFrame::voxel_in_brick(8 + 3, 16 + 5, 7), 3 * 64 + 5 * 8 + 7);
+}
+
+}  // namespace
+}  // namespace hairbake
