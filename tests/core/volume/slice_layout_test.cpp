@@ -27,7 +27,7 @@ protected:
     Stages stages_{strands_, with_voxels(70)};
     SliceLayout layout_ = [&] {
         Progress progress;
-        return make_slice_layout(strands_, stages_.frame, stages_.sorted, stages_.bricks, GetParam(), progress);
+        return make_slice_layout(stages_.frame, stages_.sorted, stages_.bricks, GetParam(), progress);
     }();
 };
 
@@ -39,9 +39,10 @@ TEST_P(EveryAxis, HoldsEveryVertexOnceInItsSliceAndTexel) {
         for (std::uint32_t slot = begin; slot < end; ++slot) {
             EXPECT_EQ(static_cast<int>(layout_.slot_s[slot]), s);
             const std::uint32_t tile = layout_.tile_begin[s] + layout_.slot_texel[slot] / 64,
-                                v = layout_.slot_vertex[slot];
+                                place = layout_.slot_vertex[slot];
             ASSERT_LT(tile, layout_.tile_begin[s + 1]);  // padding as well must read what exists
-            if (v == SliceLayout::no_vertex) continue;
+            if (place == SliceLayout::no_vertex) continue;
+            const std::uint32_t v = stages_.sorted.vertices[place];
             ++seen[v];
             const Vec3f g = stages_.frame.to_grid(strands_.positions[v]);
             EXPECT_EQ(layout_.slot_u[slot], g[layout_.axis_u]);

@@ -33,27 +33,28 @@ inline std::vector<float> sweep_one(const StrandGeometry& strands, const Stages&
     int axis = 0;
     for (int a = 1; a < 3; ++a)
         if (std::abs(l[a]) > std::abs(l[axis])) axis = a;
-    const SliceLayout layout = make_slice_layout(strands, stages.frame, stages.sorted, stages.bricks, axis, progress);
+    const SliceLayout layout = make_slice_layout(stages.frame, stages.sorted, stages.bricks, axis, progress);
     SweepScratch scratch;
     SweepSums sums(layout.slot_vertex.size());
     sweep(layout, std::span(&l, 1), sweep_scale(1), scratch, sums);
     std::vector<float> t(strands.vertex_count());
     for (std::size_t i = 0; i < layout.slot_vertex.size(); ++i)
         if (layout.slot_vertex[i] != SliceLayout::no_vertex)
-            t[layout.slot_vertex[i]] = static_cast<float>(sums.values[i]) / sweep_scale(1);
+            t[stages.sorted.vertices[layout.slot_vertex[i]]] = static_cast<float>(sums.values[i]) / sweep_scale(1);
     return t;
 }
 
-/// Means over directions, by the sweep alone.
+/// Means over directions, by the sweep alone, in the order of SortedStrands.
 inline std::vector<AngularMean> sweep_means(const StrandGeometry& strands, const Stages& stages,
                                             std::span<const Vec3d> directions) {
     std::vector<AngularMean> means(strands.vertex_count());
     const auto n = static_cast<float>(directions.size());
     for (const Vec3d& l : directions) {
         const auto t = sweep_one(strands, stages, l);
-        for (std::size_t v = 0; v < t.size(); ++v) {
-            means[v].average += t[v] / n;
-            means[v].slope += Vec3f(l) * (3 * t[v] / n);
+        for (std::size_t place = 0; place < t.size(); ++place) {
+            const float t_v = t[stages.sorted.vertices[place]];
+            means[place].average += t_v / n;
+            means[place].slope += Vec3f(l) * (3 * t_v / n);
         }
     }
     return means;

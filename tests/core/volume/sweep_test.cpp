@@ -111,16 +111,15 @@ TEST(Sweep, OfTwoDirectionsTogetherIsTheSumOfBoth) {
     const Block block;
     const Stages stages(block.strands, with_voxel_size(1));
     Progress progress;
-    const SliceLayout layout =
-        make_slice_layout(block.strands, stages.frame, stages.sorted, stages.bricks, 0, progress);
+    const SliceLayout layout = make_slice_layout(stages.frame, stages.sorted, stages.bricks, 0, progress);
     const std::vector<Vec3d> both{normalized(Vec3d(1, 0.3, 0.2)), normalized(Vec3d(1, -0.8, 0.6))};
     SweepScratch scratch;
     SweepSums sums(layout.slot_vertex.size());
     sweep(layout, both, sweep_scale(2), scratch, sums);
     const auto a = sweep_one(block.strands, stages, both[0]), b = sweep_one(block.strands, stages, both[1]);
     for (std::size_t i = 0; i < layout.slot_vertex.size(); ++i) {
-        const std::uint32_t v = layout.slot_vertex[i];
-        if (v == SliceLayout::no_vertex) continue;
+        if (layout.slot_vertex[i] == SliceLayout::no_vertex) continue;
+        const std::uint32_t v = stages.sorted.vertices[layout.slot_vertex[i]];
         const auto value = [&](std::size_t c) {
             return double(sums.values[c * sums.slots + i]) / double(sweep_scale(2));
         };
