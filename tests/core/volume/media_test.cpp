@@ -66,7 +66,7 @@ TEST(Medium, HalfSpaceOfIsotropicFibres) {
     for (const double z : {0.3, 1.0})
         expect_transmittance(
             [&](Random& random) { return slab_medium(random, thin(1, 0.01, 0.5), 5, 10, z, 100, Truth::mean_field); },
-            3, with_voxel_size(0.1), 0.0023);
+            8, with_voxel_size(0.1), 0.0023);
 }
 
 TEST(Medium, SlabOfIsotropicFibres) {
