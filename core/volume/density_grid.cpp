@@ -29,11 +29,20 @@ Leaf* make_leaf(const GridFrame& frame, const SortedStrands& sorted, const Extin
     return leaf;
 }
 
-openvdb::math::Transform::Ptr make_transform(const GridFrame& frame) {
-    auto transform = openvdb::math::Transform::createLinearTransform(frame.voxel_size);
-    const double half = 0.5 * frame.voxel_size;
-    transform->postTranslate({frame.origin.x + half, frame.origin.y + half, frame.origin.z + half});
-    return transform;
+/// Places the voxels in model space. OpenVDB takes no voxels of a volume below 3e-15 (a side of 1.45e-5): then the grid
+/// stays in voxels, and its metadata tells where they are.
+void place_in_model(const GridFrame& frame, openvdb::FloatGrid& grid) {
+    const double h = frame.voxel_size;
+    const openvdb::Vec3d first =
+        openvdb::Vec3d(frame.origin.x, frame.origin.y, frame.origin.z) + openvdb::Vec3d(0.5 * h);
+    if (h * h * h < 4e-15) {
+        grid.insertMeta("voxel_size", openvdb::DoubleMetadata(h));
+        grid.insertMeta("first_voxel_centre", openvdb::Vec3DMetadata(first));
+        return;
+    }
+    auto transform = openvdb::math::Transform::createLinearTransform(h);
+    transform->postTranslate(first);
+    grid.setTransform(transform);
 }
 
 }  // namespace
@@ -44,7 +53,7 @@ DensityGrid::DensityGrid(const GridFrame& frame, const SortedStrands& sorted, co
     impl_->grid = openvdb::FloatGrid::create(0.0f);
     impl_->grid->setName("density");
     impl_->grid->setGridClass(openvdb::GRID_FOG_VOLUME);
-    impl_->grid->setTransform(make_transform(frame));
+    place_in_model(frame, *impl_->grid);
     std::vector<Leaf*> leaves(sorted.brick_count());
     parallel_for(leaves.size(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) leaves[b] = make_leaf(frame, sorted, bricks, b);

@@ -13,7 +13,8 @@ namespace hairbake {
 
 /// A sparse float grid "density": the trace of the extinction tensors over the voxel size, that is, opacity * width *
 /// strand length per volume, in 1 / model unit; voxel (i, j, k) of GridFrame is index (i, j, k), its centre placed in
-/// model space by the grid's transform. Leaves are the bricks. Immutable; may be read from several threads.
+/// model space by the grid's transform (by the metadata voxel_size and first_voxel_centre where voxels are smaller than
+/// OpenVDB's transforms take, about 1.5e-5 units). Leaves are the bricks. Immutable; may be read from several threads.
 class DensityGrid {
 public:
     DensityGrid(const GridFrame& frame, const SortedStrands& sorted, const ExtinctionBricks& bricks);

@@ -88,6 +88,20 @@ TEST(DensityGrid, PlacesVoxelCentresInModelSpace) {
     EXPECT_NEAR(grid->indexToWorld(openvdb::Coord(1, 1, 1)).y(), -4, 0.06);
 }
 
+TEST(DensityGrid, TellsWhereVoxelsAreThatAreTooSmallForATransformOfOpenVdb) {
+    const double scale = 1e-6;
+    StrandModel model;
+    model.add(straight({0, 0, 0}, {1, 2, 3}, 9), 0.001);
+    const StrandGeometry strands = model.geometry([&](const Vec3d& p) { return p * scale; }, scale);
+    const Stages stages(strands, with_voxels(32));
+    const TemporaryFolder folder;
+    DensityGrid(stages.frame, stages.sorted, stages.bricks).write(folder / "density.vdb");
+    const auto grid = read_density(folder / "density.vdb");
+    EXPECT_EQ(grid->metaValue<double>("voxel_size"), stages.frame.voxel_size);
+    const auto centre = grid->metaValue<openvdb::Vec3d>("first_voxel_centre");
+    EXPECT_NEAR(centre.x(), double(stages.frame.origin.x) + stages.frame.voxel_size / 2, 1e-20);
+}
+
 /// Integral of the exported density over opacity * width * length of the strands.
 double mass_ratio(const StrandModel& model, double voxel_size) {
     const StrandGeometry strands = model.geometry();
