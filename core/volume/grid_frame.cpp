@@ -27,6 +27,10 @@ GridFrame make_grid_frame(const StrandGeometry& strands, const TransmittanceSett
     if (strands.vertex_count() >> 31)
         throw Error(ErrorKind::out_of_resources, "the hair model has " + std::to_string(strands.vertex_count()) +
                                                      " vertices; the volume method takes fewer than 2147483648");
+    if (!settings.voxel_size && (settings.voxels < 1 || settings.voxels > 1024))
+        throw Error(ErrorKind::usage,
+                    "transmittance.voxels is " + std::to_string(settings.voxels) + "; allowed are 32 to 1024",
+                    "transmittance.voxels");
     const Vec3d side = Vec3d(strands.bounds_max) - Vec3d(strands.bounds_min);
     const double longest = std::max({side.x, side.y, side.z});
     const double asked = settings.voxel_size.value_or(longest / settings.voxels);

@@ -153,6 +153,18 @@ float own_sides(const StrandGeometry& strands, std::uint32_t v, const AdjacentSe
     return static_cast<float>(before) + static_cast<float>(after);
 }
 
+/// Pieces in the cells around local position x.
+std::size_t pieces_around(const Neighborhood& near, const Vec3f& x) {
+    const int i = Neighborhood::cell_of(x.x), j = Neighborhood::cell_of(x.y), k = Neighborhood::cell_of(x.z);
+    std::size_t count = 0;
+    for (int row_i = i - 1; row_i <= i + 1; ++row_i)
+        for (int row_j = j - 1; row_j <= j + 1; ++row_j) {
+            const auto cell = static_cast<std::size_t>(Neighborhood::cell(row_i, row_j, k));
+            count += near.begin[cell + 2] - near.begin[cell - 1];
+        }
+    return count;
+}
+
 /// F_exact of a vertex at local position x, without the factor 1 / 4 pi.
 float exact_depth(const Neighborhood& near, const Vec3f& x, const AdjacentSegments& own, const AngularMean& mean,
                   Reaching& pieces) {
@@ -179,12 +191,13 @@ void correct_vertices(const StrandGeometry& strands, const GridFrame& frame, con
         const AdjacentSegments own = adjacent_segments(strands, v);
         float exponent = own_sides(strands, v, own) * own_unit * strands.opacities[v] * strands.widths[v];
         const float share = NearFieldWindow::share(mean.average);
-        if (share > 0) {
-            const Vec3f x = sorted.vertex_positions[place] - near.corner;
+        const Vec3f x = sorted.vertex_positions[place] - near.corner;
+        if (share > 0 && pieces_around(near, x) <= NearFieldWindow::most_pieces) {
             const int voxel = Neighborhood::voxel(static_cast<int>(x.x), static_cast<int>(x.y), static_cast<int>(x.z));
             const float smeared = grid_depth(near, voxel, window, mean);
             const float exact = exact_depth(near, x, own, mean, pieces);
-            exponent += share * (smeared - exact) / (4 * std::numbers::pi_v<float>);
+            const float gain = (smeared - exact) / (4 * std::numbers::pi_v<float>);
+            exponent += share * std::min(gain, NearFieldWindow::most_gain);
         }
         corrected[v] = std::min(1.0f, mean.average * std::exp(exponent));
     }
@@ -211,8 +224,11 @@ std::vector<float> correct_near_field(const StrandGeometry& strands, const GridF
             const std::size_t first = sorted.vertex_begin[b], last = sorted.vertex_begin[b + 1];
             if (first == last) continue;
             near.collect(frame, sorted, bricks, b);
-            HWY_DYNAMIC_DISPATCH(correct_vertices)
-            (strands, frame, sorted, first, last, near, window, means, corrected);
+            for (std::size_t at = first; at < last; at += 1024) {  // a brick may hold the whole model
+                progress.check();
+                HWY_DYNAMIC_DISPATCH(correct_vertices)
+                (strands, frame, sorted, at, std::min(last, at + 1024), near, window, means, corrected);
+            }
         }
     });
     return corrected;

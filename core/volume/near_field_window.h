@@ -26,6 +26,12 @@ struct NearFieldWindow {
     static constexpr float dark = 0.03f, light = 0.06f;
     static float share(float average) { return std::clamp((average - dark) / (light - dark), 0.0f, 1.0f); }
 
+    /// A vertex with more pieces than this in the cells around it is left to the mean field, which is right for that
+    /// many; so the work stays linear however many strands a voxel holds.
+    static constexpr std::size_t most_pieces = 4096;
+    /// The correction gives back at most the factor e: a voxel beside a dense bundle cannot make A what it likes.
+    static constexpr float most_gain = 1;
+
     alignas(64) std::array<float, padded> weight{};
     alignas(64) std::array<float, padded> direction_x{}, direction_y{}, direction_z{};  ///< unit, 0 for the own voxel
     alignas(64) std::array<std::int32_t, padded> step{};  ///< of Neighborhood's voxel index

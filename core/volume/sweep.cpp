@@ -85,7 +85,7 @@ void add_slab(const SliceLayout& layout, std::uint32_t tile, std::size_t at, int
     }
 }
 
-/// Optical depth of a group of slots along one path: four rays before the slice, then the own voxel.
+/// Optical depth of a group of slots along one path: the nearest ray before the slice, then the own voxel.
 template <class V>
 HWY_INLINE V depth_at(const RayPath& path, const float* depth, const float* slab, V u, V v, V s, V inside,
                       hn::Vec<I> texel) {
