@@ -153,29 +153,30 @@ float own_sides(const StrandGeometry& strands, std::uint32_t v, const AdjacentSe
     return static_cast<float>(before) + static_cast<float>(after);
 }
 
-/// Pieces in the cells around local position x.
-std::size_t pieces_around(const Neighborhood& near, const Vec3f& x) {
+/// Calls visit(begin, end) for the nine rows of pieces in the cells around local position x.
+template <class Visit>
+void for_each_row(const Neighborhood& near, const Vec3f& x, const Visit& visit) {
     const int i = Neighborhood::cell_of(x.x), j = Neighborhood::cell_of(x.y), k = Neighborhood::cell_of(x.z);
-    std::size_t count = 0;
     for (int row_i = i - 1; row_i <= i + 1; ++row_i)
         for (int row_j = j - 1; row_j <= j + 1; ++row_j) {
             const auto cell = static_cast<std::size_t>(Neighborhood::cell(row_i, row_j, k));
-            count += near.begin[cell + 2] - near.begin[cell - 1];
+            visit(near.begin[cell - 1], near.begin[cell + 2]);
         }
+}
+
+std::size_t pieces_around(const Neighborhood& near, const Vec3f& x) {
+    std::size_t count = 0;
+    for_each_row(near, x, [&](std::size_t begin, std::size_t end) { count += end - begin; });
     return count;
 }
 
 /// F_exact of a vertex at local position x, without the factor 1 / 4 pi.
 float exact_depth(const Neighborhood& near, const Vec3f& x, const AdjacentSegments& own, const AngularMean& mean,
                   Reaching& pieces) {
-    const int i = Neighborhood::cell_of(x.x), j = Neighborhood::cell_of(x.y), k = Neighborhood::cell_of(x.z);
     float depth = 0;
     pieces.count = 0;
-    for (int row_i = i - 1; row_i <= i + 1; ++row_i)
-        for (int row_j = j - 1; row_j <= j + 1; ++row_j) {
-            const auto cell = static_cast<std::size_t>(Neighborhood::cell(row_i, row_j, k));
-            depth += select(near, near.begin[cell - 1], near.begin[cell + 2], x, own, mean, pieces);
-        }
+    for_each_row(near, x,
+                 [&](std::size_t begin, std::size_t end) { depth += select(near, begin, end, x, own, mean, pieces); });
     return depth + integrate(pieces, mean.average);
 }
 

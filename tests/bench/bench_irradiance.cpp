@@ -26,6 +26,7 @@
 #include "core/environment/sky_generator.h"
 #include "core/irradiance/irradiance_maps.h"
 #include "tests/support/pixel_sum.h"
+#include "tests/support/shared_data.h"
 
 using namespace hairbake;
 using namespace hairbake::testing;
@@ -60,8 +61,7 @@ std::vector<NamedMap> test_maps() {
     std::vector<NamedMap> maps;
     for (const Sky sky : {Sky::sunny, Sky::studio, Sky::overcast})
         maps.push_back({"generated " + std::string(name_of(sky)), generate_sky(sky, 1024, 1)});
-    const char* given = std::getenv("HAIRBAKE_SHARED_DATA");
-    const std::filesystem::path folder = std::filesystem::path(given ? given : "../shared/data") / "env";
+    const auto folder = test_support::shared_data("env");
     Progress progress;
     if (!std::filesystem::is_directory(folder))
         std::printf("no real maps in %s: set HAIRBAKE_SHARED_DATA\n", folder.c_str());

@@ -27,6 +27,7 @@
 #include "core/volume/transmittance.h"
 #include "tests/bench/floor.h"
 #include "tests/bench/vdb_march.h"
+#include "tests/support/shared_data.h"
 
 using namespace hairbake;
 
@@ -107,8 +108,7 @@ void accuracy_table(const Options& options) {
     print_accuracy("generated curly", groom(GroomStyle::curly, options.vertices()), target, options);
     print_accuracy("generated straight", groom(GroomStyle::straight, options.vertices()), target, options);
     print_accuracy("generated wavy", groom(GroomStyle::wavy, options.vertices()), "none", options);
-    const char* given = std::getenv("HAIRBAKE_SHARED_DATA");
-    const std::filesystem::path folder = std::filesystem::path(given ? given : "../shared/data") / "hair";
+    const auto folder = test_support::shared_data("hair");
     if (!std::filesystem::is_directory(folder)) {
         std::printf("no real models in %s: set HAIRBAKE_SHARED_DATA\n", folder.c_str());
         return;

@@ -13,14 +13,15 @@
 #include "core/environment/environment_writer.h"
 #include "core/environment/sky_generator.h"
 #include "tests/support/make_map.h"
-#include "tests/support/temp_folder.h"
+#include "tests/support/shared_data.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hairbake {
 namespace {
 
+using test_support::TemporaryFolder;
 using testing::make_map;
 using testing::noise_map;
-using testing::TempFolder;
 
 EnvironmentMap read(const std::filesystem::path& file, const EnvironmentSettings& settings = {}) {
     Progress progress;
@@ -69,7 +70,7 @@ double worst_difference(const EnvironmentMap& a, const EnvironmentMap& b) {
 }
 
 TEST(EnvironmentReader, FloatFormatsComeBackExactly) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const EnvironmentMap map = noise_map(64, 1);
     write(folder / "a.exr", map, OIIO::TypeDesc::FLOAT);
     write(folder / "tiled.exr", map, OIIO::TypeDesc::FLOAT,
@@ -87,7 +88,7 @@ TEST(EnvironmentReader, FloatFormatsComeBackExactly) {
 }
 
 TEST(EnvironmentReader, HdrComesBackWithinItsEightBits) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const EnvironmentMap map = noise_map(64, 2);
     write(folder / "a.hdr", map, OIIO::TypeDesc::FLOAT);
     const EnvironmentMap back = read(folder / "a.hdr");
@@ -98,7 +99,7 @@ TEST(EnvironmentReader, HdrComesBackWithinItsEightBits) {
 }
 
 TEST(EnvironmentReader, IntegersAreDecodedAsSrgbAndWarnedOf) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     // IEC 61966-2-1 by hand: code 0.5 is ((0.5 + 0.055) / 1.055)^2.4 = 0.214041; 0.02 is 0.02 / 12.92 = 0.001548.
     const EnvironmentMap map = make_map(16, [](const Vec3d&) { return Vec3d{0.5, 0.02, 1}; });
     const auto check = [&](const char* name, OIIO::TypeDesc type, double steps) {
@@ -118,7 +119,7 @@ TEST(EnvironmentReader, IntegersAreDecodedAsSrgbAndWarnedOf) {
 }
 
 TEST(EnvironmentReader, AlphaIsDroppedGreyIsSpreadAndChannelsAreFoundByName) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const EnvironmentMap map = noise_map(16, 3);
     write(folder / "rgba.exr", map, OIIO::TypeDesc::FLOAT, {}, 4);
     EXPECT_EQ(worst_difference(map, read(folder / "rgba.exr")), 0);
@@ -137,7 +138,7 @@ TEST(EnvironmentReader, AlphaIsDroppedGreyIsSpreadAndChannelsAreFoundByName) {
 }
 
 TEST(EnvironmentReader, PrimariesAreNamed) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const EnvironmentMap map = noise_map(16, 4);
     const auto with = [](std::array<float, 8> xy) {
         return [xy](OIIO::ImageSpec& s) {
@@ -154,7 +155,7 @@ TEST(EnvironmentReader, PrimariesAreNamed) {
 }
 
 TEST(EnvironmentReader, ExposureTintConventionAndRotationAreTaken) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const EnvironmentMap map = noise_map(16, 5);
     write(folder / "a.exr", map, OIIO::TypeDesc::FLOAT);
     EnvironmentSettings settings;
@@ -172,7 +173,7 @@ TEST(EnvironmentReader, ExposureTintConventionAndRotationAreTaken) {
 }
 
 TEST(EnvironmentReader, InvalidRadianceIsRefusedNamingThePixelOrClampedAndCounted) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     EnvironmentMap map = make_map(16, [](const Vec3d&) { return Vec3d{1, 2, 3}; });
     map.pixels[2 * 16 + 5].y = -4;
     map.pixels[3 * 16 + 1].z = std::numeric_limits<float>::quiet_NaN();
@@ -222,7 +223,7 @@ TEST(EnvironmentReader, WrongSettingsAreUsageErrorsNamingTheField) {
 }
 
 TEST(EnvironmentReader, ACancelledReadStops) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     write_environment(generate_sky(Sky::overcast, 256, 1), folder / "a.hdr");
     Progress progress;
     progress.cancel();
@@ -235,7 +236,7 @@ TEST(EnvironmentReader, ACancelledReadStops) {
 }
 
 TEST(EnvironmentWriter, ItsFilesComeBack) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const EnvironmentMap map = generate_sky(Sky::sunny, 128, 1);
     write_environment(map, folder / "a.exr");
     EXPECT_EQ(worst_difference(map, read(folder / "a.exr")), 0);
@@ -251,9 +252,8 @@ TEST(EnvironmentWriter, ItsFilesComeBack) {
 }
 
 TEST(EnvironmentReader, RealMapsAreRead) {
-    const char* given = std::getenv("HAIRBAKE_SHARED_DATA");
-    const auto folder = std::filesystem::path(given ? given : HAIRBAKE_SOURCE_DIR "/../shared/data") / "env";
-    if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << "no real maps in " << folder;
+    const auto folder = test_support::shared_data("env");
+    if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << test_support::missing_data(folder);
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
         const EnvironmentMap map = read(entry.path());
         EXPECT_EQ(map.width, 2 * map.height);

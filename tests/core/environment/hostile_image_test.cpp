@@ -8,7 +8,7 @@
 #include "core/environment/environment_reader.h"
 #include "core/environment/environment_writer.h"
 #include "tests/support/make_map.h"
-#include "tests/support/temp_folder.h"
+#include "tests/support/temporary_folder.h"
 
 #ifdef __SANITIZE_ADDRESS__
 // OpenImageIO 2.4 leaks a 31-byte string when libpng jumps out of its read callback at the end of a broken file. To
@@ -20,7 +20,7 @@ extern "C" const char* __asan_default_options() { return "fast_unwind_on_malloc=
 namespace hairbake {
 namespace {
 
-using testing::TempFolder;
+using test_support::TemporaryFolder;
 
 void save(const std::filesystem::path& file, const std::string& bytes) {
     std::ofstream(file, std::ios::binary).write(bytes.data(), std::streamsize(bytes.size()));
@@ -88,7 +88,7 @@ std::string hdr_header(const std::string& resolution) {
 }
 
 TEST(HostileImage, HugeDeclaredSizesAreRefusedBeforeMemoryIsTaken) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const long before = peak_kilobytes();
     save(folder / "a.exr", exr_header(1 << 20, 1 << 19));
     save(folder / "b.exr", exr_header(32768, 16384));
@@ -107,7 +107,7 @@ TEST(HostileImage, HugeDeclaredSizesAreRefusedBeforeMemoryIsTaken) {
 }
 
 TEST(HostileImage, TruncatedFilesOfEveryFormatAreErrors) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const EnvironmentMap map = testing::noise_map(64, 1);
     for (const char* name : {"a.hdr", "a.exr", "a.tif", "a.png"}) {
         const std::filesystem::path file = folder / name;
@@ -126,7 +126,7 @@ TEST(HostileImage, TruncatedFilesOfEveryFormatAreErrors) {
 }
 
 TEST(HostileImage, DamagedFilesNeitherCrashNorGiveInvalidRadiance) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     for (const char* name : {"a.hdr", "a.exr"}) {
         write_environment(testing::noise_map(32, 2), folder / name);
         const std::string whole = load(folder / name);
@@ -148,7 +148,7 @@ TEST(HostileImage, DamagedFilesNeitherCrashNorGiveInvalidRadiance) {
 }
 
 TEST(HostileImage, WhatIsNoEnvironmentMapIsRefusedWithTheReason) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     save(folder / "text.hdr", "this is not an image");
     EXPECT_NE(refusal(folder / "text.hdr").find("no known image"), std::string::npos);
     save(folder / "empty.exr", "");

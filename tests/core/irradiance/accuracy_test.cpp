@@ -10,6 +10,7 @@
 #include "core/environment/sky_generator.h"
 #include "core/irradiance/irradiance_maps.h"
 #include "tests/support/pixel_sum.h"
+#include "tests/support/shared_data.h"
 
 namespace hairbake {
 namespace {
@@ -40,9 +41,8 @@ TEST(Accuracy, GeneratedStudio) { expect_the_issues_accuracy(generate_sky(Sky::s
 TEST(Accuracy, GeneratedOvercastSky) { expect_the_issues_accuracy(generate_sky(Sky::overcast, 512, 1)); }
 
 TEST(Accuracy, RealMaps) {
-    const char* given = std::getenv("HAIRBAKE_SHARED_DATA");
-    const auto folder = std::filesystem::path(given ? given : HAIRBAKE_SOURCE_DIR "/../shared/data") / "env";
-    if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << "no real maps in " << folder;
+    const auto folder = test_support::shared_data("env");
+    if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << test_support::missing_data(folder);
     Progress progress;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
         SCOPED_TRACE(entry.path().filename().string());
