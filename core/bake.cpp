@@ -63,8 +63,8 @@ Transmittance trace_all(const StrandScene& scene, const TransmittanceSettings& s
 
 void read_hair_stage(BakeResult& result, Progress& progress) {
     run_stage(result, progress, "read_hair", [&] {
-        result.hair_digest = digest_of_file(*result.request.hair);
-        result.transmittance_key = transmittance_key(result.hair_digest, result.request);
+        result.hair_inputs.hair = digest_of_file(*result.request.hair);
+        result.transmittance_key = transmittance_key(result.hair_inputs, result.request);
         result.hair = read_hair(*result.request.hair);
     });
 }
@@ -80,7 +80,7 @@ void transmittance_stage(BakeResult& result, Progress& progress) {
             scene.emplace(strands, progress);
             result.transmittance = trace_all(*scene, settings, progress);
         } else {
-            result.transmittance = bake_transmittance_volume(strands, settings, progress);
+            result.transmittance = bake_transmittance_volume({strands}, settings, progress);
         }
     });
     result.hair_facts = facts_of(strands);

@@ -12,6 +12,7 @@
 #include "core/irradiance/irradiance_maps.h"
 #include "core/reference/error_bar.h"
 #include "core/request.h"
+#include "core/request_keys.h"
 #include "core/volume/transmittance.h"
 
 namespace hairbake {
@@ -38,7 +39,8 @@ struct BakeResult {
     std::string id;       ///< digest of the two stage keys and the outputs
 
     // The transmittance stage; empty without hair.
-    std::string hair_digest, transmittance_key;  ///< SHA-256 of the file; of what the stage read
+    TransmittanceInputs hair_inputs;  ///< SHA-256 of the files
+    std::string transmittance_key;    ///< SHA-256 of what the stage read
     HairFacts hair_facts;
     std::optional<HairModel> hair;  ///< kept only where the outputs need it
     std::optional<Transmittance> transmittance;

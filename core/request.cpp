@@ -42,7 +42,12 @@ void check_inputs(const BakeRequest& request) {
                     "(--env) for irradiance maps, or both",
                     "hair");
     if (request.hair && request.hair->empty()) refuse("hair", "empty", "a path");
-    if (request.environment && request.environment->empty()) refuse("environment", "empty", "a path");
+    for (const auto& [field, path] : {std::pair("environment", &request.environment),
+                                      {"occluder", &request.occluder},
+                                      {"receiver", &request.receiver}})
+        if (*path && (*path)->empty()) refuse(field, "empty", "a path");
+    for (const auto& [field, path] : {std::pair("occluder", &request.occluder), {"receiver", &request.receiver}})
+        if (*path && !request.hair) refuse(field, "given without hair", "a mesh beside a hair model");
 }
 
 void check_strand(const StrandSettings& strand) {
@@ -60,14 +65,29 @@ void check_transmittance(const TransmittanceSettings& settings) {
     check_range("transmittance.seed", static_cast<double>(settings.seed), 0, 0x1p53 - 1);
     check_range("transmittance.voxels", settings.voxels, 32, 1024);
     if (settings.voxel_size) check_positive("transmittance.voxel_size", *settings.voxel_size, 1e18);
+    check_range("transmittance.sh_bands", settings.sh_bands, 0, 4);
+    check_range("transmittance.opacity_maps.layers", settings.opacity_maps.layers, 1, 16);
+    check_range("transmittance.opacity_maps.layer_spacing", settings.opacity_maps.layer_spacing, 1, 16);
+    check_range("transmittance.opacity_maps.resolution", settings.opacity_maps.resolution, 16, 4096);
     check_range("transmittance.reference_vertices", settings.reference_vertices, 0, 100000);
 }
 
 void check_environment(const EnvironmentSettings& settings) {
-    check_choice("irradiance.layout", settings.layout, {"auto", "latlong"});
+    check_choice(
+        "irradiance.layout", settings.layout,
+        {"auto", "latlong", "faces", "horizontal_cross", "vertical_cross", "horizontal_strip", "vertical_strip"});
     for (const double angle : settings.rotation_deg) check_range("irradiance.rotation_deg", angle, -36000, 36000);
     check_range("irradiance.exposure_stops", settings.exposure_stops, -64, 64);
     for (const double factor : settings.tint) check_range("irradiance.tint", factor, 0, 1e6);
+}
+
+void check_light(const std::string& field, const DirectionalLight& light) {
+    for (int i = 0; i < 3; ++i) {
+        check_range(field + ".direction", light.direction[i], -1e6, 1e6);
+        check_range(field + ".irradiance", light.irradiance[i], 0, 1e12);
+    }
+    if (!(dot(light.direction, light.direction) > 1e-12))
+        refuse(field + ".direction", "of no length", "a direction towards the light");
 }
 
 void check_irradiance(const IrradianceSettings& settings) {
@@ -78,11 +98,15 @@ void check_irradiance(const IrradianceSettings& settings) {
     if (settings.sh_bands_diffuse) check_range("irradiance.sh_bands.diffuse", *settings.sh_bands_diffuse, 1, 128);
     if (settings.sh_bands_specular) check_range("irradiance.sh_bands.specular", *settings.sh_bands_specular, 1, 128);
     check_positive("irradiance.sh_error", settings.sh_error, 1);
+    if (settings.lights.size() > 64)
+        refuse("irradiance.lights", std::to_string(settings.lights.size()) + " lights", "at most 64");
+    for (std::size_t i = 0; i < settings.lights.size(); ++i)
+        check_light("irradiance.lights[" + std::to_string(i) + "]", settings.lights[i]);
 }
 
 void check_outputs(const std::vector<std::string>& outputs) {
     for (auto output = outputs.begin(); output != outputs.end(); ++output) {
-        check_choice("outputs", *output, {"npy", "exr", "hair"});
+        check_choice("outputs", *output, output_formats());
         if (std::find(outputs.begin(), output, *output) != output) refuse("outputs", *output + " twice", "each once");
     }
 }
@@ -91,6 +115,11 @@ void check_outputs(const std::vector<std::string>& outputs) {
 
 bool BakeRequest::wants(const std::string& format) const {
     return std::find(outputs.begin(), outputs.end(), format) != outputs.end();
+}
+
+const std::vector<std::string>& output_formats() {
+    static const std::vector<std::string> formats{"npy", "exr", "hair", "ktx2", "dds", "raw", "glb", "vdb"};
+    return formats;
 }
 
 void validate(const BakeRequest& request) {

@@ -7,10 +7,11 @@
 
 namespace hairbake {
 
-std::string transmittance_key(const std::string& hair_digest, const BakeRequest& request) {
+std::string transmittance_key(const TransmittanceInputs& digests, const BakeRequest& request) {
     return Digest()
         .add("hairbake transmittance " + std::to_string(transmittance_algorithm) + "\n")
-        .add(hair_digest + "\n" + canonical_transmittance_settings(request))
+        .add(digests.hair + "\n" + digests.occluder + "\n" + digests.receiver + "\n")
+        .add(canonical_transmittance_settings(request))
         .hex();
 }
 

@@ -13,9 +13,14 @@ inline constexpr int transmittance_algorithm = 1;
 inline constexpr int irradiance_algorithm = 1;
 inline constexpr int output_format = 1;
 
-/// SHA-256 of the hair file's digest, the strand and transmittance settings and the algorithm's version; knows
-/// nothing of the lighting or of where the file lies.
-std::string transmittance_key(const std::string& hair_digest, const BakeRequest& request);
+/// SHA-256 of the files that the transmittance stage reads; empty where there is none.
+struct TransmittanceInputs {
+    std::string hair, occluder, receiver;
+};
+
+/// SHA-256 of the digests of the stage's files, the strand and transmittance settings and the algorithm's version;
+/// knows nothing of the lighting or of where the files lie.
+std::string transmittance_key(const TransmittanceInputs& digests, const BakeRequest& request);
 
 /// SHA-256 of the environment file's digest, the irradiance settings and the algorithm's version; knows nothing of
 /// the hair.

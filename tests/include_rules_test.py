@@ -11,12 +11,13 @@ from pathlib import Path
 TABLE = [
     (r"core/base/", [r"core/base/"]),
     (r"core/hair/", [r"core/(base|hair)/"]),
+    (r"core/mesh/", [r"core/(base|mesh)/"]),
     (r"core/environment/", [r"core/(base|environment)/"]),
     (r"core/fiber/", [r"core/(base|fiber)/"]),
     (r"core/irradiance/", [r"core/(base|environment|fiber|irradiance)/"]),
-    (r"core/volume/", [r"core/(base|hair|volume)/"]),
-    (r"core/reference/", [r"core/(base|hair|reference)/"]),  # never volume: the reference is independent of the bake
-    (r"core/output/", [r"core/(base|hair|environment|irradiance|volume|reference|output)/",
+    (r"core/volume/", [r"core/(base|hair|mesh|volume)/"]),
+    (r"core/reference/", [r"core/(base|hair|mesh|reference)/"]),  # never volume: the reference is independent of the bake
+    (r"core/output/", [r"core/(base|hair|mesh|environment|irradiance|volume|reference|output)/",
                        r"core/(bake\w*|request\w*)\.h"]),
     (r"core/[^/]+$", [r"core/"]),
     (r"clients/", [r"core/(bake\w*|request\w*|manifest|output/manifest|sample|inspect|compare)\.h", r"core/base/",
@@ -30,7 +31,7 @@ TABLE = [
 ]
 OURS = re.compile(r"(core|clients|server|tests)/")
 # Libraries that stay in .cpp files.
-IN_SOURCES_ONLY = re.compile(r"(openvdb|embree\d|OpenImageIO|hwy)/|(httplib|sqlite3)\.h")
+IN_SOURCES_ONLY = re.compile(r"(openvdb|embree\d|OpenImageIO|hwy)/|(httplib|sqlite3|tiny_gltf|tiny_obj_loader)\.h")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 

@@ -28,7 +28,7 @@ enum class InvalidRadiance {
 
 /// The request's fields that say how an environment is read.
 struct EnvironmentSettings {
-    std::string layout = "auto";  ///< auto | latlong (crosses, strips and faces with the formats issue)
+    std::string layout = "auto";  ///< auto, latlong, faces, {horizontal,vertical}_{cross,strip}
     LatLong latlong = LatLong::gltf;
     std::array<double, 3> rotation_deg{};  ///< active, right-handed, about world X first, then Y, then Z
     double exposure_stops = 0;             ///< radiance times 2^exposure_stops

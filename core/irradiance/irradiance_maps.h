@@ -8,6 +8,7 @@
 #include "core/base/progress.h"
 #include "core/base/vec.h"
 #include "core/environment/cube_map.h"
+#include "core/environment/directional_light.h"
 #include "core/environment/environment_map.h"
 
 namespace hairbake {
@@ -28,6 +29,7 @@ struct IrradianceSettings {
     std::optional<int> sh_bands_specular;
     double sh_error = 0.01;      ///< target of auto: RMS over the largest value of all maps, (0, 1]
     bool clamp_negative = true;  ///< sh only: negative texels become 0, their mass is reported
+    std::vector<DirectionalLight> lights;  ///< added analytically with the exact kernel, at most 64
 };
 
 struct MapStatistics {

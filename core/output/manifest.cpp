@@ -36,7 +36,7 @@ Json stages(const BakeResult& result) {
 
 Json hair_input(const BakeResult& result) {
     const HairFacts& facts = result.hair_facts;
-    return {{"sha256", result.hair_digest},
+    return {{"sha256", result.hair_inputs.hair},
             {"strands", facts.strands},
             {"vertices", facts.vertices},
             {"segments", facts.segments},

@@ -118,8 +118,9 @@ std::vector<AngularMean> sweep_all(const GridFrame& frame, const SortedStrands& 
 
 }  // namespace
 
-Transmittance bake_transmittance_volume(const StrandGeometry& strands, const TransmittanceSettings& settings,
+Transmittance bake_transmittance_volume(const TransmittanceScene& scene, const TransmittanceSettings& settings,
                                         Progress& progress) {
+    const StrandGeometry& strands = scene.strands;
     const auto directions = make_directions(settings.direction_set, settings.directions, settings.seed);
     Transmittance result;
     result.directions = settings.directions;

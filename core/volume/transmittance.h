@@ -10,14 +10,23 @@
 #include "core/base/direction_set.h"
 #include "core/base/progress.h"
 #include "core/hair/strand_geometry.h"
+#include "core/mesh/triangle_mesh.h"
 
 namespace hairbake {
 
 class DensityGrid;
 
 enum class TransmittanceMethod {
-    volume,  ///< mean field: density grid, sheared sweep, near-field correction
-    trace    ///< Embree, every vertex against the true strands: slow, the truth
+    volume,        ///< mean field: density grid, sheared sweep, near-field correction
+    opacity_maps,  ///< layered deep opacity maps, the published estimator, kept for comparison
+    trace          ///< Embree, every vertex against the true strands: slow, the truth
+};
+
+/// Of the method opacity_maps (spec, section 3b).
+struct OpacityMapSettings {
+    int layers = 3;            ///< 1 to 16
+    double layer_spacing = 2;  ///< each layer is this many times as thick as the one before, 1 to 16
+    int resolution = 512;      ///< texels on the longer edge of a map, 16 to 4096
 };
 
 /// The request's `transmittance` block.
@@ -28,12 +37,30 @@ struct TransmittanceSettings {
     std::uint64_t seed = 1;            ///< of the stratified and random sets
     int voxels = 256;                  ///< on the longest axis of the bounds, 32 to 1024
     std::optional<double> voxel_size;  ///< model units, instead of `voxels`; > 0
-    int reference_vertices = 256;      ///< traced for the error bar, 0 to 100000
+    int sh_bands = 0;                  ///< bands of directional transmittance, 1 to 4; 0 for none
+    bool bent_cone = false;            ///< also bake bent cones
+    OpacityMapSettings opacity_maps;
+    int reference_vertices = 256;  ///< traced for the error bar, 0 to 100000
+};
+
+/// What the transmittance stage reads. Refers to its parts, which must outlive it.
+struct TransmittanceScene {
+    const StrandGeometry& strands;
+    const TriangleMesh* occluder = nullptr;  ///< stops light completely
+    const TriangleMesh* receiver = nullptr;  ///< the hair's and the occluder's shadow is asked for at its positions
+    bool receiver_is_occluder = false;       ///< then it does not shadow itself
 };
 
 /// A(x) at every vertex and how it came about. Times and memory are measured by the caller.
 struct Transmittance {
     std::vector<float> average;  ///< [V], A in [0, 1], file order
+    /// [V * bands^2], c_i = (4 pi / N) sum over k of T_k Y_i(w_k) in the order l*l + l + m; with sh_bands > 0.
+    std::vector<float> sh;
+    /// [V * 4], unit axis and half-angle in radians; (0, 0, 0, pi) where nothing is blocked; with bent_cone.
+    std::vector<float> bent_cone;
+    /// [R * 2] for R positions of the receiver: mean of T over the hemisphere about the normal, plain and
+    /// cosine-weighted; with a receiver.
+    std::vector<float> receiver;
     int directions = 0;
     double voxel_size = 0;                       ///< effective h in model units; 0 for `trace`
     std::uint64_t occupied_voxels = 0;           ///< voxels with extinction; 0 for `trace`
@@ -47,7 +74,7 @@ struct Transmittance {
 /// Deterministic bit for bit for any thread count; values agree to 1e-5 between SIMD targets.
 /// Throws Error(usage) for settings out of range, Error(bad_input) for bounds that no grid can hold,
 /// Error(out_of_resources), Error(cancelled). `settings.method` and `reference_vertices` are not looked at.
-Transmittance bake_transmittance_volume(const StrandGeometry& strands, const TransmittanceSettings& settings,
+Transmittance bake_transmittance_volume(const TransmittanceScene& scene, const TransmittanceSettings& settings,
                                         Progress& progress);
 
 }  // namespace hairbake

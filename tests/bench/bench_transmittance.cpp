@@ -60,7 +60,7 @@ double time_bake(const StrandGeometry& strands, const TransmittanceSettings& set
     double best = 1e9;
     for (int run = 0; run < 3; ++run)
         best = std::min(best, seconds([&] {
-                            Transmittance baked = bake_transmittance_volume(strands, settings, progress);
+                            Transmittance baked = bake_transmittance_volume({strands}, settings, progress);
                             if (result) *result = std::move(baked);
                         }));
     return best;
@@ -84,7 +84,7 @@ std::vector<std::uint32_t> scored_vertices(const StrandGeometry& strands) {
 void print_accuracy(const std::string& name, const StrandGeometry& strands, const char* target,
                     const Options& options) {
     Progress progress;
-    const Transmittance baked = bake_transmittance_volume(strands, {}, progress);
+    const Transmittance baked = bake_transmittance_volume({strands}, {}, progress);
     const auto vertices = scored_vertices(strands);
     const StrandScene scene(strands, progress);
     const auto directions = make_directions(DirectionSet::fibonacci, options.reference_directions(), 0);
@@ -211,7 +211,7 @@ int measure_memory(std::size_t vertices, int voxels) {
     TransmittanceSettings settings;
     settings.voxels = voxels;
     Progress progress;
-    const Transmittance baked = bake_transmittance_volume(strands, settings, progress);
+    const Transmittance baked = bake_transmittance_volume({strands}, settings, progress);
     const double occupied = double(baked.occupied_voxels);
     std::printf("| %zu | %d | %.0f | %.0f | %.1f | %.0f |\n", vertices, voxels, before, peak_megabytes(),
                 occupied * 1e-6, (peak_megabytes() - before) * 1e6 / occupied);

@@ -114,7 +114,7 @@ std::function<Vec3d(const Vec3d&)> rotation(const Vec3d& axis, double angle) {
 
 std::vector<float> bake(const StrandGeometry& strands, const TransmittanceSettings& settings) {
     Progress progress;
-    return bake_transmittance_volume(strands, settings, progress).average;
+    return bake_transmittance_volume({strands}, settings, progress).average;
 }
 
 TransmittanceSettings with_voxels(int voxels, int directions) {

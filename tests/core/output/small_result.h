@@ -19,7 +19,7 @@ inline BakeResult small_result() {
     result.request.hair = "two.hair";
     result.request.environment = "sky.hdr";
     result.id = "0123456789abcdef";
-    result.hair_digest = "aa";
+    result.hair_inputs.hair = "aa";
     result.transmittance_key = "bb";
     result.environment_digest = "cc";
     result.irradiance_key = "dd";

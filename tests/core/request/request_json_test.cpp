@@ -23,15 +23,17 @@ void expect_refused(const std::string& text, const std::string& field, const std
 TEST(RequestJson, EveryFieldMakesTheRoundTrip) {
     // No value is a default, so a field that is lost on the way shows.
     const std::string text = R"({
-        "hair": "a.hair", "environment": "b.hdr", "occluder": null, "receiver": null,
+        "hair": "a.hair", "environment": "b.hdr", "occluder": "c.obj", "receiver": "d.obj",
         "strand": {"width": 0.25, "width_scale": 2.5, "opacity": "from_file"},
         "transmittance": {"method": "trace", "directions": 49, "direction_set": "stratified", "seed": 9007199254740991,
-                          "voxels": 128, "voxel_size": 0.125, "sh_bands": 0, "bent_cone": false,
+                          "voxels": 128, "voxel_size": 0.125, "sh_bands": 2, "bent_cone": true,
+                          "opacity_maps": {"layers": 4, "layer_spacing": 1.5, "resolution": 64},
                           "reference_vertices": 7},
         "irradiance": {"model": "kajiya-kay", "face_size": 8, "specular_maps": 5, "exponent": 12.5, "method": "sh",
                        "sh_bands": {"diffuse": 3, "specular": 8}, "sh_error": 0.5, "clamp_negative": false,
                        "layout": "latlong", "latlong": "openexr", "rotation_deg": [1.0, 2.0, 3.0],
-                       "exposure_stops": -1.5, "tint": [0.5, 0.25, 0.125], "lights": [], "invalid_radiance": "clamp"},
+                       "exposure_stops": -1.5, "tint": [0.5, 0.25, 0.125],
+                       "lights": [{"direction": [0.0, 1.0, 0.0], "irradiance": [1.0, 2.0, 3.0]}], "invalid_radiance": "clamp"},
         "outputs": ["hair"]})";
     const BakeRequest request = parsed(text);
     EXPECT_EQ(nlohmann::json::parse(to_json(request)), nlohmann::json::parse(text));
@@ -78,7 +80,8 @@ TEST(RequestJson, WrongTypesAreNamedWithWhatIsAllowed) {
     expect_refused(R"({"transmittance": {"directions": true}})", "transmittance.directions", {"an integer"});
     expect_refused(R"({"transmittance": {"directions": 99999999999}})", "transmittance.directions", {});
     expect_refused(R"({"transmittance": {"seed": -1}})", "transmittance.seed", {});
-    expect_refused(R"({"transmittance": {"method": "magic"}})", "transmittance.method", {"volume, trace"});
+    expect_refused(R"({"transmittance": {"method": "magic"}})", "transmittance.method",
+                   {"volume, opacity_maps, trace"});
     expect_refused(R"({"irradiance": {"clamp_negative": 1}})", "irradiance.clamp_negative", {"true or false"});
     expect_refused(R"({"irradiance": {"rotation_deg": [1, 2]}})", "irradiance.rotation_deg", {"three numbers"});
     expect_refused(R"({"irradiance": {"sh_bands": 3}})", "irradiance.sh_bands", {"an object"});
@@ -86,12 +89,18 @@ TEST(RequestJson, WrongTypesAreNamedWithWhatIsAllowed) {
     EXPECT_EQ(parsed(R"({"transmittance": {"directions": 9.0}})").transmittance.directions, 9);
 }
 
-TEST(RequestJson, FieldsOfLaterVersionsAreAcceptedWithTheirNeutralValueAlone) {
-    EXPECT_NO_THROW(parsed(R"({"occluder": null, "transmittance": {"sh_bands": 0}, "irradiance": {"lights": []}})"));
-    expect_refused(R"({"occluder": "head.obj"})", "occluder", {"head.obj", "only null"});
-    expect_refused(R"({"transmittance": {"sh_bands": 2}})", "transmittance.sh_bands", {"only 0"});
-    expect_refused(R"({"transmittance": {"bent_cone": true}})", "transmittance.bent_cone", {"only false"});
-    expect_refused(R"({"irradiance": {"lights": [{}]}})", "irradiance.lights", {"only []"});
+TEST(RequestJson, ALightHasADirectionAndAnIrradianceAndNothingElse) {
+    const auto with_light = [](const std::string& light) { return R"({"irradiance": {"lights": [)" + light + "]}}"; };
+    const BakeRequest request = parsed(with_light(R"({"irradiance": [4, 5, 6], "direction": [1, 2, 3]})"));
+    ASSERT_EQ(request.irradiance.lights.size(), 1u);
+    EXPECT_EQ(request.irradiance.lights[0].direction, (Vec3d{1, 2, 3}));
+    EXPECT_EQ(request.irradiance.lights[0].irradiance, (Vec3d{4, 5, 6}));
+    expect_refused(with_light("{}"), "irradiance.lights[0]", {"direction and irradiance"});
+    expect_refused(with_light(R"({"direction": [0, 1, 0], "irradiance": [1, 1, 1], "colour": 1})"),
+                   "irradiance.lights[0]", {"direction and irradiance"});
+    expect_refused(with_light(R"({"direction": [0, 1], "irradiance": [1, 1, 1]})"), "irradiance.lights[0].direction",
+                   {"three numbers"});
+    expect_refused(R"({"irradiance": {"lights": {}}})", "irradiance.lights", {"a list of lights"});
 }
 
 TEST(RequestJson, BrokenJsonIsAUsageErrorThatNamesTheSource) {

@@ -40,7 +40,7 @@ bool accepted(const std::string& path, const Json& value) {
     BakeRequest request;
     try {
         merge_json(request, object.dump(), "test");
-        if (!request.hair && !request.environment) request.hair = "a.hair";
+        if (!request.hair && !(path == "environment" && request.environment)) request.hair = "a.hair";
         validate(request);
         return true;
     } catch (const Error& error) {
@@ -89,6 +89,7 @@ TEST(RequestSchema, EveryEnumerationAndConstantIsAcceptedAndNothingElse) {
 
 TEST(RequestSchema, RangesEndWhereTheCodeEndsThem) {
     for (const auto& [path, property] : schema_fields()) {
+        if (path == "irradiance.lights") continue;   // a list of objects: see request_test
         if (path == "transmittance.seed") continue;  // its ends are the ends of exact integers: see request_test
         for (const Json& alternative : alternatives(property)) {
             const bool triple = alternative.contains("items") && alternative.value("maxItems", 0) == 3;

@@ -59,12 +59,39 @@ TEST(Request, StratifiedSetsWantASquareCount) {
     expect_refused(request, "transmittance.directions", {"99", "square"});
 }
 
+TEST(Request, MeshesWantHairBesideThem) {
+    BakeRequest request;
+    request.environment = "a.hdr";
+    request.occluder = "head.obj";
+    expect_refused(request, "occluder", {"without hair"});
+    request.occluder.reset();
+    request.receiver = "head.obj";
+    expect_refused(request, "receiver", {"without hair"});
+    request.hair = "a.hair";
+    EXPECT_NO_THROW(validate(request));
+    request.receiver = "";
+    expect_refused(request, "receiver", {"empty"});
+}
+
+TEST(Request, ALightHasALengthAndNoNegativeIrradiance) {
+    BakeRequest request;
+    request.environment = "a.hdr";
+    request.irradiance.lights = {{{0, 2, 0}, {1, 1, 1}}};
+    EXPECT_NO_THROW(validate(request));
+    request.irradiance.lights.push_back({{0, 0, 0}, {1, 1, 1}});
+    expect_refused(request, "irradiance.lights[1].direction", {"of no length"});
+    request.irradiance.lights[1] = {{0, 1, 0}, {1, -1, 1}};
+    expect_refused(request, "irradiance.lights[1].irradiance", {"-1"});
+    request.irradiance.lights.assign(65, {{0, 1, 0}, {1, 1, 1}});
+    expect_refused(request, "irradiance.lights", {"65", "at most 64"});
+}
+
 TEST(Request, OutputsAreKnownAndNamedOnce) {
     BakeRequest request = valid();
     request.outputs = {};
     EXPECT_NO_THROW(validate(request));
-    request.outputs = {"npy", "ktx2"};
-    expect_refused(request, "outputs", {"ktx2", "npy, exr, hair"});
+    request.outputs = {"npy", "obj"};
+    expect_refused(request, "outputs", {"obj", "npy, exr, hair, ktx2, dds, raw, glb, vdb"});
     request.outputs = {"npy", "exr", "npy"};
     expect_refused(request, "outputs", {"npy twice"});
 }

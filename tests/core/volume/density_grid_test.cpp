@@ -106,7 +106,7 @@ TEST(DensityGrid, TellsWhereVoxelsAreThatAreTooSmallForATransformOfOpenVdb) {
 double mass_ratio(const StrandModel& model, double voxel_size) {
     const StrandGeometry strands = model.geometry();
     Progress progress;
-    const Transmittance baked = bake_transmittance_volume(strands, with_voxel_size(voxel_size, 1), progress);
+    const Transmittance baked = bake_transmittance_volume({strands}, with_voxel_size(voxel_size, 1), progress);
     const TemporaryFolder folder;
     baked.density->write(folder / "density.vdb");
     double mass = 0, expected = 0;

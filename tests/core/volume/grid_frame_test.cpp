@@ -61,11 +61,11 @@ TEST(GridFrame, TakesThe95thPercentileOfTheWidths) {
 
 TEST(GridFrame, WarnsOfTheWidthBoundWithTheVoxelSizeThatHolds) {
     Progress progress;
-    const Transmittance wide = bake_transmittance_volume(diagonal(0.125), with_voxels(256), progress);
+    const Transmittance wide = bake_transmittance_volume({diagonal(0.125)}, with_voxels(256), progress);
     EXPECT_EQ(wide.voxel_size, 0.25);
     ASSERT_EQ(wide.warnings.size(), 1u);
     EXPECT_NE(wide.warnings[0].find("0.25"), std::string::npos) << wide.warnings[0];
-    EXPECT_TRUE(bake_transmittance_volume(diagonal(0.001), with_voxels(256), progress).warnings.empty());
+    EXPECT_TRUE(bake_transmittance_volume({diagonal(0.001)}, with_voxels(256), progress).warnings.empty());
 }
 
 TEST(GridFrame, RefusesMoreThan1024VoxelsAndNamesTheField) {

@@ -216,7 +216,7 @@ TEST(Transmittance, DependsOnTheSeedOfASeededSetOnly) {
 
 TEST(Transmittance, OfAnEmptyModelIsEmpty) {
     Progress progress;
-    const Transmittance baked = bake_transmittance_volume(StrandModel().geometry(), {}, progress);
+    const Transmittance baked = bake_transmittance_volume({StrandModel().geometry()}, {}, progress);
     EXPECT_TRUE(baked.average.empty());
     EXPECT_EQ(baked.directions, 100);
     EXPECT_EQ(baked.density, nullptr);
@@ -293,7 +293,7 @@ TEST(Transmittance, StopsWhenItIsCancelled) {
         CancelsAt progress(at);
         if (at == 0) progress.cancel();
         try {
-            bake_transmittance_volume(strands, with_voxels(64), progress);
+            bake_transmittance_volume({strands}, with_voxels(64), progress);
             ADD_FAILURE() << "went on at " << at;
         } catch (const Error& error) {
             EXPECT_EQ(error.kind(), ErrorKind::cancelled);
@@ -303,7 +303,7 @@ TEST(Transmittance, StopsWhenItIsCancelled) {
 
 TEST(Transmittance, TellsWhatItUsed) {
     Progress progress;
-    const Transmittance baked = bake_transmittance_volume(tuft().geometry(), with_voxels(64, 36), progress);
+    const Transmittance baked = bake_transmittance_volume({tuft().geometry()}, with_voxels(64, 36), progress);
     EXPECT_EQ(baked.directions, 36);
     EXPECT_EQ(baked.average.size(), 10'000u);
     ASSERT_TRUE(baked.density);
