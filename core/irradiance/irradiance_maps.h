@@ -27,8 +27,8 @@ struct IrradianceSettings {
     IrradianceMethod method = IrradianceMethod::exact;
     std::optional<int> sh_bands_diffuse;  ///< 1 to 128 bands (l = 0 .. bands - 1); empty: auto from sh_error
     std::optional<int> sh_bands_specular;
-    double sh_error = 0.01;      ///< target of auto: RMS over the largest value of all maps, (0, 1]
-    bool clamp_negative = true;  ///< sh only: negative texels become 0, their mass is reported
+    double sh_error = 0.01;                ///< target of auto: RMS over the largest value of all maps, (0, 1]
+    bool clamp_negative = true;            ///< sh only: negative texels become 0, their mass is reported
     std::vector<DirectionalLight> lights;  ///< added analytically with the exact kernel, at most 64
 };
 
@@ -65,6 +65,10 @@ struct IrradianceMaps {
 
     std::vector<std::string> warnings;
 };
+
+/// Resolution of the light set (light_set.h) that the exact maps sum over: cells scale with the lobe's width, 1 /
+/// sqrt(p); 64 at p = 64 and below.
+int light_resolution(double exponent);
 
 /// Checks every field. Throws Error(usage) naming the first one out of range.
 void validate(const IrradianceSettings& settings);
