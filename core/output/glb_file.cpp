@@ -118,6 +118,7 @@ tinygltf::Model make_gltf(const HairModel& model, const Transmittance& transmitt
     gltf.asset.generator = "hairbake " + version();
     gltf.defaultScene = 0;
     gltf.scenes.emplace_back();
+    gltf.scenes[0].name = "hair";  // tinygltf writes null for a scene with nothing to say
     if (model.vertex_count() == 0) {
         gltf.buffers.clear();
         return gltf;
