@@ -11,6 +11,7 @@
 #include "core/hair/tangents.h"
 #include "tests/core/output/small_result.h"
 #include "tests/support/run_program.h"
+#include "tests/support/source_tree.h"
 #include "tests/support/temporary_folder.h"
 
 namespace hairbake {
@@ -52,8 +53,8 @@ std::vector<float> floats_of(const tinygltf::Model& model, const std::string& at
 
 /// What the validator found, of any severity.
 nlohmann::json issues_of(const std::filesystem::path& file) {
-    const auto run = test_support::run_program("node " HAIRBAKE_SOURCE_DIR "/tests/npm/validate_gltf.mjs " +
-                                               file.string() + " 2>&1");
+    const auto run = test_support::run_program("node " + test_support::source_file("tests/npm/validate_gltf.mjs") +
+                                               " " + file.string() + " 2>&1");
     EXPECT_EQ(run.exit_code, 0) << run.output << "(./dev test installs what this needs)";
     return run.exit_code ? nlohmann::json() : nlohmann::json::parse(run.output)["issues"]["messages"];
 }

@@ -13,6 +13,7 @@
 #include "core/output/raw_maps.h"
 #include "tests/support/labelled_cube.h"
 #include "tests/support/run_program.h"
+#include "tests/support/source_tree.h"
 #include "tests/support/temporary_folder.h"
 
 namespace hairbake {
@@ -66,9 +67,9 @@ protected:
         write_map_npy(maps, folder / "");
         for (const WrittenFile& file : GetParam().write(maps, folder / "", progress))
             EXPECT_EQ(file.scale, file.name == "maps.json" ? std::nullopt : std::optional(scale)) << file.name;
-        return run_program("/usr/bin/python3 " HAIRBAKE_SOURCE_DIR "/tests/core/output/check_half_maps.py " +
-                           GetParam().name + " " + (folder / "").string() + " " + number_text(scale) + " " + more +
-                           " 2>&1")
+        return run_program("/usr/bin/python3 " + test_support::source_file("tests/core/output/check_half_maps.py") +
+                           " " + GetParam().name + " " + (folder / "").string() + " " + number_text(scale) + " " +
+                           more + " 2>&1")
             .output;
     }
 };
