@@ -64,10 +64,10 @@ def check_ktx2(folder, diffuse, specular, scale):
         raw = (folder / (name + ".ktx2")).read_bytes()
         offset = int.from_bytes(raw[80:88], "little")
         assert offset % 8 == 0 and offset + level.nbytes == len(raw)
-    return diffuse_like(level.reshape(-1, 6, n, n, 4)[0], scale)
+    return radiance_of(level.reshape(-1, 6, n, n, 4)[0], scale)
 
 
-def diffuse_like(cube, scale):
+def radiance_of(cube, scale):
     return cube[..., :3].astype(np.float64) * scale
 
 
@@ -113,10 +113,10 @@ def check_dds(folder, diffuse, specular, scale):
             k = n // size
             blocks = lambda x: x.reshape(x.shape[0], size, k, size, k, x.shape[-1]).sum((2, 4))
             mean = blocks(values.astype(np.float64) * weights) / blocks(weights)
-            error = np.abs(level[..., :3] * float(scale) - mean)
+            error = np.abs(radiance_of(level, scale) - mean)
             bound = np.abs(blocks(np.abs(values) * weights) / blocks(weights)) * (2.0 ** -11 + 1e-5) + 2.0 ** -24 * scale
             assert (error <= bound).all(), (name, size, (error / bound).max())
-    return diffuse_like(np.frombuffer((folder / "diffuse.dds").read_bytes()[148:], "<f2")
+    return radiance_of(np.frombuffer((folder / "diffuse.dds").read_bytes()[148:], "<f2")
                         .reshape(6, -1)[:, :4 * n * n].reshape(6, n, n, 4), scale)
 
 
@@ -136,7 +136,7 @@ def check_raw(folder, diffuse, specular, scale):
     for entry, values in zip(page["maps"], [diffuse, *specular]):
         found = np.frombuffer(data, "<f2", entry["bytes"] // 2, entry["offset"]).reshape(6, n, n, 4)
         same_bits(found, halves_of(values, scale), entry)
-    return diffuse_like(np.frombuffer(data, "<f2", 6 * n * n * 4).reshape(6, n, n, 4), scale)
+    return radiance_of(np.frombuffer(data, "<f2", 6 * n * n * 4).reshape(6, n, n, 4), scale)
 
 
 # ---- orientation -----------------------------------------------------------------------------------------------------
