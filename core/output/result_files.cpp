@@ -33,14 +33,18 @@ std::vector<WrittenFile> write_half_maps(const BakeResult& result, const std::fi
 }
 
 /// The hair with its A in every form asked for. An empty model has no density grid: that is a warning.
-std::vector<WrittenFile> write_transmittance(BakeResult& result, const std::filesystem::path& folder) {
+std::vector<WrittenFile> write_transmittance(BakeResult& result, const std::filesystem::path& folder,
+                                             const Progress& progress) {
     const BakeRequest& request = result.request;
     const Transmittance& transmittance = *result.transmittance;
     std::vector<WrittenFile> files;
     if (request.wants("npy")) files.push_back(write_transmittance_npy(transmittance.average, folder));
     if (request.wants("hair")) files.push_back(write_transmittance_hair(*result.hair, transmittance.average, folder));
+    progress.check();
     if (request.wants("glb")) files.push_back(write_glb(*result.hair, transmittance, folder));
+    progress.check();
     if (request.wants("raw")) append(files, write_strand_raw(*result.hair, transmittance, folder));
+    progress.check();
     if (request.wants("vdb")) {
         if (transmittance.density)
             files.push_back(write_density_vdb(*transmittance.density, folder));
@@ -65,7 +69,7 @@ std::vector<WrittenFile> write_files(BakeResult& result, const std::filesystem::
         progress.check();
         progress.report("write", fraction);
     };
-    if (result.transmittance) append(files, write_transmittance(result, folder));
+    if (result.transmittance) append(files, write_transmittance(result, folder, progress));
     step(0.2);
     if (result.irradiance) {
         if (request.wants("npy")) append(files, write_map_npy(*result.irradiance, folder));

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/digest.h"
+#include "core/hair/hair_file.h"
 #include "tests/core/bake/small_inputs.h"
 
 namespace hairbake {
@@ -89,6 +90,21 @@ TEST(Bake, WritesEveryOutputAndTheManifestKnowsItsDigestSizeAndScale) {
         EXPECT_EQ(file["bytes"], fs::file_size(inputs.folder / "result" / name)) << name;
     }
     EXPECT_EQ(files.size(), 12u + 2);  // 4 dds, 2 ktx2, 2 + 2 raw, glb, vdb; environment_sh.json and preview.png
+}
+
+TEST(Bake, AnEmptyModelHasNoDensityGridWhichIsAWarning) {
+    const test_support::TemporaryFolder folder;
+    HairModel none;
+    none.strand_begin = {0};
+    write_hair(none, folder / "none.hair");
+    BakeRequest request;
+    request.hair = (folder / "none.hair").string();
+    request.outputs = {"raw", "glb", "vdb"};
+    bake_to(request, folder / "result");
+    EXPECT_FALSE(fs::exists(folder / "result" / "density.vdb"));
+    EXPECT_TRUE(fs::exists(folder / "result" / "hair.glb"));
+    const std::string warnings = Json::parse(get(folder / "result" / "manifest.json"))["warnings"].dump();
+    EXPECT_NE(warnings.find("density.vdb is left out"), std::string::npos) << warnings;
 }
 
 TEST(Bake, StagesDoNotKnowOfEachOther) {
