@@ -1,14 +1,11 @@
 #include "core/inspect.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <span>
-#include <system_error>
 
 #include "core/base/error.h"
 #include "core/environment/environment_reader.h"
@@ -37,7 +34,7 @@ Json range_of(std::span<const float> values, float otherwise) {
 Json hair_facts(const fs::path& file) {
     const HairModel model = read_hair(file);
     Json facts{{"kind", "hair model"},
-               {"format", "HAIR"},
+               {"format", model.format},
                {"strands", model.strand_count()},
                {"vertices", model.vertex_count()}};
     std::uint32_t longest = 0;
@@ -113,14 +110,6 @@ Json result_facts(const fs::path& folder) {
     return facts;
 }
 
-bool begins_as_hair(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw Error(ErrorKind::bad_input, file.string() + ": " + std::generic_category().message(errno));
-    char magic[4] = {};
-    stream.read(magic, sizeof magic);
-    return std::memcmp(magic, "HAIR", 4) == 0;
-}
-
 std::string value_text(const Json& value) {
     if (value.is_string()) return value.get<std::string>();
     if (value.is_number_float()) {
@@ -153,7 +142,7 @@ std::string inspect(const fs::path& path, Progress& progress) {
     if (fs::is_directory(path))
         facts.update(result_facts(path));
     else
-        facts.update(begins_as_hair(path) ? hair_facts(path) : environment_facts(path, progress));
+        facts.update(is_hair_file(path) ? hair_facts(path) : environment_facts(path, progress));
     return facts.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
