@@ -4,8 +4,8 @@
 #include <numbers>
 
 #include "core/base/parallel.h"
+#include "core/base/spherical_harmonics.h"
 #include "core/environment/latlong.h"
-#include "core/environment/spherical_harmonics.h"
 
 namespace hairbake {
 

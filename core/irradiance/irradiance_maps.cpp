@@ -7,7 +7,7 @@
 
 #include "core/environment/light_set.h"
 #include "core/environment/sh_projection.h"
-#include "core/environment/spherical_harmonics.h"
+#include "core/environment/sh_rotation.h"
 #include "core/fiber/kajiya_kay.h"
 #include "core/irradiance/interpolation_bound.h"
 #include "core/irradiance/kernel_sum.h"

@@ -1,4 +1,4 @@
-#include "core/environment/spherical_harmonics.h"
+#include "core/base/spherical_harmonics.h"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/base/random.h"
 #include "core/environment/sh_projection.h"
+#include "core/environment/sh_rotation.h"
 #include "tests/support/make_map.h"
 
 namespace hairbake {
