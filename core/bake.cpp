@@ -16,6 +16,7 @@
 #include "core/output/result_folder.h"
 #include "core/reference/tracer.h"
 #include "core/request_keys.h"
+#include "core/volume/opacity_transmittance.h"
 
 namespace hairbake {
 namespace {
@@ -79,6 +80,8 @@ void transmittance_stage(BakeResult& result, Progress& progress) {
         if (settings.method == TransmittanceMethod::trace) {
             scene.emplace(strands, progress);
             result.transmittance = trace_all(*scene, settings, progress);
+        } else if (settings.method == TransmittanceMethod::opacity_maps) {
+            result.transmittance = bake_transmittance_opacity_maps({strands}, settings, progress);
         } else {
             result.transmittance = bake_transmittance_volume({strands}, settings, progress);
         }
