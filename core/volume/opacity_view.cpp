@@ -39,8 +39,9 @@ OpacityView make_opacity_view(std::span<const Vec3f> points, const Vec3d& l, con
     view.v = cross(l, view.u);
     const Extent extent = extent_of(points, view);
     const Vec3d side = extent.high - extent.low;
-    // One texel on each side is a margin, so that the four texels around a point always exist.
-    view.texel_size = std::max(std::max(side.x, side.y) / (settings.resolution - 3), least_texel);
+    // One texel on each side is a margin, so that the four texels around a point always exist. A trifle more than the
+    // quotient, so that rounding cannot add a texel.
+    view.texel_size = std::max(std::max(side.x, side.y) * (1 + 1e-9) / (settings.resolution - 2), least_texel);
     view.scale = 1 / view.texel_size;
     view.origin_u = extent.low.x - view.texel_size;
     view.origin_v = extent.low.y - view.texel_size;

@@ -139,8 +139,8 @@ TEST(OpacityMap, CrossingStrandsShadowTheLowerOneByTheUppersCoverage) {
 TEST(OpacityMap, LayersInterpolateBetweenTheirEndsAndStayConstantBehindTheLast) {
     // A stack of strands along x, one under the other at the depths 0, 1, 2 ... 70 (in texels of 1/30), each covering
     // c = w / texel of the texels of one row. Layers that end after 7, 21 and 49 texels hold the strands at depths up
-    // to there: 8, 22 and 50 of them; between the ends the depth runs straight. The probes lie in the middle of the
-    // row.
+    // to there, 8 and 22 of them, and the last one all 71; between the ends the depth runs straight. The probes lie in
+    // the middle of the row.
     const double texel = 1.0 / 30, w = 0.001;
     StrandModel model;
     for (int k = 0; k <= 70; ++k) model.add({{-1, 0.5 * texel, -k * texel}, {1, 0.5 * texel, -k * texel}}, w);
@@ -159,7 +159,7 @@ TEST(OpacityMap, LayersInterpolateBetweenTheirEndsAndStayConstantBehindTheLast) 
     const double c = w / texel;
     const auto between = [](double a, double b, double t) { return a + (b - a) * t; };
     const double expected[] = {
-        0, 8 * 3.5 / 7, 8, between(8, 22, 7.0 / 14), between(22, 50, 9.0 / 28), between(22, 50, 27.9 / 28), 50, 50};
+        0, 8 * 3.5 / 7, 8, between(8, 22, 7.0 / 14), between(22, 71, 9.0 / 28), between(22, 71, 27.9 / 28), 71, 71};
     for (std::uint32_t k = 0; k < std::size(expected); ++k)
         EXPECT_NEAR(drawn.depth(probe + k), c * expected[k], 0.01 * c) << k;
 }
