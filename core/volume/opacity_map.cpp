@@ -42,9 +42,8 @@ void OpacityMap::draw(const OpacityView& view, const StrandGeometry& strands, st
                       const Progress& progress) {
     view_ = &view;
     const std::size_t layers = view.layer_end.size();
-    const std::size_t texels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
-    first_.assign(texels, no_hair);
-    depths_.assign(texels * layers, 0);
+    texels_.assign(place(0, view.height), 0);
+    for (std::size_t at = 0; at < texels_.size(); at += 1 + layers) texels_[at] = no_hair;
     const auto for_each_piece = [&](const auto& visit) {
         for (std::size_t i = 0; i < points.size(); ++i) {
             if (i % 65536 == 0) progress.check();
@@ -52,17 +51,16 @@ void OpacityMap::draw(const OpacityView& view, const StrandGeometry& strands, st
             if (!(coverage > 0)) continue;
             const LightPoint &a = points[i], &b = points[i + 1];
             walk_texels(a, b, [&](int x, int y, float t0, float t1) {
-                visit(texel(x, y), (t1 - t0) * coverage, depth_at(a, b, t0), depth_at(a, b, t1));
+                visit(&texels_[place(x, y)], (t1 - t0) * coverage, depth_at(a, b, t0), depth_at(a, b, t1));
                 return true;
             });
         }
     };
-    for_each_piece([&](std::size_t at, float, float z0, float z1) { first_[at] = std::min({first_[at], z0, z1}); });
-    for_each_piece([&](std::size_t at, float coverage, float z0, float z1) {
-        float* depth = &depths_[at * layers];
+    for_each_piece([](float* texel, float, float z0, float z1) { texel[0] = std::min({texel[0], z0, z1}); });
+    for_each_piece([&](float* texel, float coverage, float z0, float z1) {
         for (std::size_t k = 0; k + 1 < layers; ++k)
-            depth[k] += coverage * share_before(first_[at] + view.layer_end[k], z0, z1);
-        depth[layers - 1] += coverage;  // the last layer receives everything
+            texel[1 + k] += coverage * share_before(texel[0] + view.layer_end[k], z0, z1);
+        texel[layers] += coverage;  // the last layer receives everything
     });
 }
 
@@ -97,7 +95,7 @@ OpacityMap::Footprint OpacityMap::footprint(const LightPoint& p) const {
     for (int i = 0; i < 4; ++i) {
         const int x = footprint.x + (i & 1), y = footprint.y + (i >> 1);
         if (x < 0 || y < 0 || x >= view_->width || y >= view_->height) continue;
-        const float behind = p.z - first_[texel(x, y)];
+        const float first = texel(x, y)[0], behind = p.z - first;
         if (!(behind > 0)) continue;  // before the first hair, or no hair at all
         auto& t = footprint.texels[static_cast<std::size_t>(i)];
         t.weight = (i & 1 ? fx : 1 - fx) * (i >> 1 ? fy : 1 - fy);
@@ -106,8 +104,8 @@ OpacityMap::Footprint OpacityMap::footprint(const LightPoint& p) const {
         t.last_layer = layer_end.size() - 1;
         const float begin = t.layer > 0 ? layer_end[t.layer - 1] : 0, thickness = *found - begin;
         t.inside = thickness > 0 ? std::min(1.0f, (behind - begin) / thickness) : 1;
-        t.before = first_[texel(x, y)] + begin;
-        t.end = first_[texel(x, y)] + *found;
+        t.before = first + begin;
+        t.end = first + *found;
     }
     return footprint;
 }
@@ -142,7 +140,7 @@ float OpacityMap::optical_depth(const LightPoint& point) const {
     for (int i = 0; i < 4; ++i) {
         const auto& t = around.texels[static_cast<std::size_t>(i)];
         if (t.weight == 0) continue;
-        const float* layers = layers_of(around.x + (i & 1), around.y + (i >> 1));
+        const float* layers = texel(around.x + (i & 1), around.y + (i >> 1)) + 1;
         const float before = t.layer > 0 ? layers[t.layer - 1] : 0;
         depth += t.weight * (before + t.inside * (layers[t.layer] - before));
     }

@@ -36,7 +36,7 @@ public:
     float optical_depth(const LightPoint& point) const;
 
     /// Coverage of a texel summed over its whole depth.
-    float coverage(int x, int y) const { return layers_of(x, y)[view_->layer_end.size() - 1]; }
+    float coverage(int x, int y) const { return texel(x, y)[view_->layer_end.size()]; }
     const OpacityView& view() const { return *view_; }
 
     /// Bytes that a map of `settings` takes at most.
@@ -45,17 +45,19 @@ public:
 private:
     struct Footprint;
 
-    std::size_t texel(int x, int y) const {
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(view_->width) + static_cast<std::size_t>(x);
+    std::size_t place(int x, int y) const {
+        return (static_cast<std::size_t>(y) * static_cast<std::size_t>(view_->width) + static_cast<std::size_t>(x)) *
+               (1 + view_->layer_end.size());
     }
-    const float* layers_of(int x, int y) const { return &depths_[texel(x, y) * view_->layer_end.size()]; }
+    const float* texel(int x, int y) const { return &texels_[place(x, y)]; }
     Footprint footprint(const LightPoint& point) const;
     float own_depth(const StrandGeometry& strands, std::span<const LightPoint> points, std::uint32_t v,
                     const Footprint& footprint) const;
 
     const OpacityView* view_ = nullptr;
-    std::vector<float> first_;   ///< [height * width], z0; infinite without hair
-    std::vector<float> depths_;  ///< [height * width * layers], optical depth before each layer's end
+    /// [height * width * (1 + layers)]: a texel's z0 (infinite without hair), then the optical depth before each
+    /// layer's end.
+    std::vector<float> texels_;
 };
 
 }  // namespace hairbake
