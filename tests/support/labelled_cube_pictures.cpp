@@ -12,8 +12,9 @@
 
 namespace {
 
+// One stop darker, so that the white names stand out from the light faces.
 std::uint8_t srgb(float linear) {
-    const float v = std::clamp(linear, 0.0f, 1.0f);
+    const float v = std::clamp(linear / 2, 0.0f, 1.0f);
     return static_cast<std::uint8_t>(
         std::lround(255 * (v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f)));
 }
