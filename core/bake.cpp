@@ -67,6 +67,7 @@ void read_hair_stage(BakeResult& result, Progress& progress) {
         result.hair_inputs.hair = digest_of_file(*result.request.hair);
         result.transmittance_key = transmittance_key(result.hair_inputs, result.request);
         result.hair = read_hair(*result.request.hair);
+        check_outputs(result);
     });
 }
 

@@ -36,7 +36,7 @@ const std::vector<FieldFlag>& field_flags() {
          {"irradiance.sh_bands.diffuse", "irradiance.sh_bands.specular"},
          "bands of sh: a number or auto"},
         {"--layout", {"irradiance.layout"}, "of the environment: auto, latlong, faces, horizontal_cross ..."},
-        {"--outputs", {"outputs"}, "files beside the manifest, of npy,exr,hair"},
+        {"--outputs", {"outputs"}, "files beside the manifest, of npy,exr,hair,ktx2,dds,raw,glb,vdb"},
     };
     return flags;
 }
