@@ -8,6 +8,7 @@
 #include "core/base/digest.h"
 #include "core/base/direction_set.h"
 #include "core/base/parallel.h"
+#include "core/environment/environment_files.h"
 #include "core/environment/environment_reader.h"
 #include "core/hair/hair_file.h"
 #include "core/hair/strand_geometry.h"
@@ -100,7 +101,7 @@ void transmittance_stage(BakeResult& result, Progress& progress) {
 void read_environment_stage(BakeResult& result, Progress& progress) {
     run_stage(result, progress, "read_environment", [&] {
         const std::string& file = *result.request.environment;
-        result.environment_digest = digest_of_file(file);
+        result.environment_digest = digest_of_environment(file);
         result.irradiance_key = irradiance_key(result.environment_digest, result.request);
         result.environment = read_environment(file, result.request.environment_settings, progress);
     });

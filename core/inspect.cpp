@@ -8,8 +8,9 @@
 #include <span>
 
 #include "core/base/error.h"
+#include "core/environment/cube_map.h"
+#include "core/environment/environment_files.h"
 #include "core/environment/environment_reader.h"
-#include "core/environment/latlong.h"
 #include "core/hair/hair_file.h"
 #include "core/output/manifest.h"
 
@@ -65,17 +66,22 @@ Json brightest_pixel(const EnvironmentMap& map) {
                                             [&](const Vec3f& a, const Vec3f& b) { return sum(a) < sum(b); });
     const auto index = static_cast<std::size_t>(brightest - map.pixels.begin());
     const std::size_t row = index / map.width, column = index % map.width;
-    return {{"row", row},
-            {"column", column},
-            {"radiance", triple(*brightest)},
-            {"direction", triple(direction_of(map, {column + 0.5, row + 0.5}))}};
+    Json facts = Json::object();
+    const bool cube = map.shape == EnvironmentShape::cube;
+    if (cube) facts["face"] = std::string(cube_face_name(static_cast<int>(row / map.width)));
+    facts["row"] = cube ? row % map.width : row;
+    facts["column"] = column;
+    facts["radiance"] = triple(*brightest);
+    facts["direction"] = triple(direction_of(map, {column + 0.5, row + 0.5}));
+    return facts;
 }
 
 Json mean_radiance(const EnvironmentMap& map) {
-    const LatLongRows rows = latlong_rows(map.width, map.height);
+    const TexelSolidAngles solid_angles = texel_solid_angles(map);
     Vec3d sum;
-    for (std::size_t i = 0; i < map.pixels.size(); ++i)
-        sum += Vec3d(map.pixels[i]) * rows.solid_angle[i / static_cast<std::size_t>(map.width)];
+    for (int y = 0; y < map.height; ++y)
+        for (int x = 0; x < map.width; ++x)
+            sum += Vec3d(map.pixels[std::size_t(y) * map.width + x]) * solid_angles.at(x, y);
     return triple(sum / (4 * std::numbers::pi));
 }
 
@@ -83,8 +89,12 @@ Json environment_facts(const fs::path& file, Progress& progress) {
     EnvironmentSettings settings;
     settings.invalid_radiance = InvalidRadiance::clamp;  // so that every map can be looked at; counted below
     const EnvironmentMap map = read_environment(file, settings, progress);
-    Json facts{{"kind", "environment map"}, {"format", map.source_format}, {"width", map.width},
-               {"height", map.height},      {"layout", map.layout},        {"primaries", map.primaries}};
+    Json facts{{"kind", "environment map"}, {"format", map.source_format}, {"layout", map.layout}};
+    if (map.shape == EnvironmentShape::cube)
+        facts["face_size"] = map.width;
+    else
+        facts.update({{"width", map.width}, {"height", map.height}});
+    facts["primaries"] = map.primaries;
     facts["low_dynamic_range"] = map.low_dynamic_range;
     facts["mean_radiance"] = mean_radiance(map);
     facts["brightest_pixel"] = brightest_pixel(map);
@@ -108,6 +118,17 @@ Json result_facts(const fs::path& folder) {
     for (const Json& file : manifest["files"]) files[file.at("name").get<std::string>()] = file.value("bytes", 0ull);
     facts["files"] = files;
     return facts;
+}
+
+/// Of a result, or of the six faces of an environment.
+Json folder_facts(const fs::path& folder, Progress& progress) {
+    if (fs::exists(folder / "manifest.json")) return result_facts(folder);
+    try {
+        return environment_facts(folder, progress);
+    } catch (const Error& error) {
+        throw Error(error.kind(), std::string(error.what()) + "; nor is there the manifest.json of a bake result",
+                    error.field());
+    }
 }
 
 std::string value_text(const Json& value) {
@@ -140,7 +161,9 @@ void add_lines(const Json& object, const std::string& prefix, std::string& lines
 std::string inspect(const fs::path& path, Progress& progress) {
     Json facts{{"path", path.string()}};
     if (fs::is_directory(path))
-        facts.update(result_facts(path));
+        facts.update(folder_facts(path, progress));
+    else if (find_environment_files(path).faces())
+        facts.update(environment_facts(path, progress));
     else
         facts.update(is_hair_file(path) ? hair_facts(path) : environment_facts(path, progress));
     return facts.dump(2, ' ', false, Json::error_handler_t::replace);

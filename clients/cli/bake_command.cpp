@@ -35,6 +35,7 @@ const std::vector<FieldFlag>& field_flags() {
         {"--sh-bands",
          {"irradiance.sh_bands.diffuse", "irradiance.sh_bands.specular"},
          "bands of sh: a number or auto"},
+        {"--layout", {"irradiance.layout"}, "of the environment: auto, latlong, faces, horizontal_cross ..."},
         {"--outputs", {"outputs"}, "files beside the manifest, of npy,exr,hair,ktx2,dds,raw,glb,vdb"},
     };
     return flags;
@@ -161,7 +162,9 @@ void add_bake_command(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("bake", "Bake transmittance and irradiance maps into a result folder");
     const auto options = std::make_shared<Options>();
     command->add_option("--hair", options->hair, "hair model; alone: transmittance only");
-    command->add_option("--env", options->environment, "HDR environment map; alone: irradiance maps only");
+    command->add_option(
+        "--env", options->environment,
+        "HDR environment: a picture, or a cube's six as a folder or sky_{face}.hdr; alone: irradiance maps only");
     command->add_option("--out", options->folder, "result folder: new, empty or an earlier result")->required();
     command->add_option("--preset", options->preset, "draft, final or paper (see hairbake presets)");
     command->add_option("--request", options->request_file, "JSON file with fields of the request");

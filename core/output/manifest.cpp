@@ -45,15 +45,18 @@ Json hair_input(const BakeResult& result) {
 
 Json environment_input(const BakeResult& result) {
     const EnvironmentMap& map = *result.environment;
-    return {{"sha256", result.environment_digest},
-            {"width", map.width},
-            {"height", map.height},
-            {"format", map.source_format},
-            {"layout", map.layout},
-            {"latlong", std::string(name_of(map.latlong))},
-            {"primaries", map.primaries},
-            {"low_dynamic_range", map.low_dynamic_range},
-            {"energy", map.repairs.energy_total}};
+    Json block{{"sha256", result.environment_digest}};
+    if (map.shape == EnvironmentShape::cube)
+        block["face_size"] = map.width;
+    else
+        block.update({{"width", map.width}, {"height", map.height}});
+    block["format"] = map.source_format;
+    block["layout"] = map.layout;
+    if (map.shape == EnvironmentShape::latlong) block["latlong"] = std::string(name_of(map.latlong));
+    block["primaries"] = map.primaries;
+    block["low_dynamic_range"] = map.low_dynamic_range;
+    block["energy"] = map.repairs.energy_total;
+    return block;
 }
 
 Json inputs(const BakeResult& result) {
