@@ -56,7 +56,8 @@ TEST(MeshFile, CutsPolygonsOfHundredsOfCornersIntoFans) {
     std::string text, face = "f";
     for (int k = 0; k < 500; ++k) {
         text += "v " + std::to_string(std::cos(k * 0.0125)) + " " + std::to_string(std::sin(k * 0.0125)) + " 0\n";
-        face += " " + std::to_string(k + 1);
+        face += ' ';
+        face += std::to_string(k + 1);
     }
     const TriangleMesh mesh = read(text + face);
     ASSERT_EQ(mesh.triangles.size(), 498u);
