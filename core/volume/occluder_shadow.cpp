@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/mesh/mesh_topology.h"
+
 namespace hairbake {
 namespace {
 
@@ -37,13 +39,15 @@ OccluderShadow::OccluderShadow(const TriangleMesh& mesh, const ShadowScale& scal
     cell_ = std::max(scale.size / kCellsPerSize, 2 * reach / kMostCells);
     half_side_ = reach / cell_;
     tolerance_ = static_cast<float>(0.5 * scale.lift() / cell_);
+    const MeshTopology topology = topology_of(mesh);
+    facing_ = !topology.closed ? 0 : topology.inside_out ? -1 : 1;
+    for (const Vec3f& p : mesh.positions) positions_.push_back((Vec3d(p) - middle_) / cell_);
     for (const auto& t : mesh.triangles) {
-        std::array<Vec3d, 3> c;
-        for (std::size_t k = 0; k < 3; ++k) c[k] = (Vec3d(mesh.positions[t[k]]) - middle_) / cell_;
+        const std::array<Vec3d, 3> c{positions_[t[0]], positions_[t[1]], positions_[t[2]]};
         const Vec3d across = cross(c[1] - c[0], c[2] - c[0]);
         const double area = length(across);
         if (!(area > 0)) continue;
-        corners_.insert(corners_.end(), c.begin(), c.end());
+        triangles_.push_back(t);
         const Vec3d normal = across / area;
         planes_.push_back({Vec3f(normal), static_cast<float>(dot(normal, c[0]))});
     }
@@ -53,10 +57,10 @@ OccluderShadow::OccluderShadow(const TriangleMesh& mesh, const ShadowScale& scal
 void OccluderShadow::draw_triangle(const Raster& raster, std::uint32_t triangle, Scratch& scratch) const {
     std::array<double, 3> u, v, height;
     for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3d& c = corners_[3 * std::size_t{triangle} + k];
-        u[k] = dot(c, raster.across_u) + raster.half - 0.5;
-        v[k] = dot(c, raster.across_v) + raster.half - 0.5;
-        height[k] = dot(c, raster.l);
+        const Vec3d& c = scratch.projected[triangles_[triangle][k]];
+        u[k] = c.x;
+        v[k] = c.y;
+        height[k] = c.z;
     }
     const double area = (u[1] - u[0]) * (v[2] - v[0]) - (u[2] - u[0]) * (v[1] - v[0]);
     const auto [v_low, v_high] = std::minmax({v[0], v[1], v[2]});
@@ -92,9 +96,14 @@ void OccluderShadow::draw_triangle(const Raster& raster, std::uint32_t triangle,
 void OccluderShadow::draw(const Raster& raster, const Progress& progress, Scratch& scratch) const {
     scratch.height.resize(raster.cells());
     scratch.triangle.assign(raster.cells(), kNone);
+    scratch.projected.resize(positions_.size());
+    for (std::size_t i = 0; i < positions_.size(); ++i)
+        scratch.projected[i] = {dot(positions_[i], raster.across_u) + raster.half - 0.5,
+                                dot(positions_[i], raster.across_v) + raster.half - 0.5, dot(positions_[i], raster.l)};
+    const Vec3f l(raster.l * facing_);
     for (std::uint32_t t = 0; t < planes_.size(); ++t) {
         if (t % 256 == 0) progress.check();
-        draw_triangle(raster, t, scratch);
+        if (facing_ == 0 || dot(planes_[t].normal, l) > 0) draw_triangle(raster, t, scratch);
     }
 }
 

