@@ -81,7 +81,7 @@ TEST(BakeCommand, UsageErrorsEndWithTwoAndNameTheFieldAndWhatIsAllowed) {
         {both + " --preset best", "draft, final, paper"},
         {both + " --threads -1", "--threads"},
         {both + " --progress loud", "--progress"},
-        {both + " --outputs npy,ktx2", "npy, exr, hair"},
+        {both + " --outputs npy,obj", "npy, exr, hair, ktx2, dds, raw, glb, vdb"},
         {"sample " + workshop.path("s") + " --paper-model 5", "--paper-model"},
         {"presets best", "draft, final, paper"},
     };
