@@ -88,6 +88,7 @@ void read_hair_stage(BakeResult& result, Progress& progress) {
         result.transmittance_key = transmittance_key(result.hair_inputs, result.request);
         result.hair = read_hair(*request.hair);
         if (request.occluder) read_occluder(result);
+        check_outputs(result);
     });
 }
 

@@ -35,7 +35,7 @@ const std::vector<FieldFlag>& field_flags() {
         {"--sh-bands",
          {"irradiance.sh_bands.diffuse", "irradiance.sh_bands.specular"},
          "bands of sh: a number or auto"},
-        {"--outputs", {"outputs"}, "files beside the manifest, of npy,exr,hair"},
+        {"--outputs", {"outputs"}, "files beside the manifest, of npy,exr,hair,ktx2,dds,raw,glb,vdb"},
     };
     return flags;
 }

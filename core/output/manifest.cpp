@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "core/base/error.h"
-#include "core/output/map_files.h"
+#include "core/output/map_metadata.h"
 #include "core/output/versions.h"
 #include "core/request_json.h"
 #include "core/request_keys.h"
@@ -130,6 +130,7 @@ Json conventions() {
             {"theta_prime", "from the tangent; map m of M + 1 is for m * 180 / M degrees"},
             {"cube_faces", "+X -X +Y -Y +Z -Z, OpenGL orientation, rows from the top"},
             {"latlong", "files are gltf: row 0 is +Y, centre column +X, right of it +Z"},
+            {"half_floats", "the value is what is stored times the file's scale; only level 0 is for tangents"},
             {"vertices", "the hair file's point order"},
             {"units", "maps: radiance times steradian, Kd and Ks not applied; transmittance: 0 to 1"}};
 }
@@ -159,6 +160,7 @@ Json file_list(const std::vector<WrittenFile>& files) {
         Json entry{{"name", file.name}, {"sha256", file.sha256}, {"bytes", file.bytes}};
         if (!file.shape.empty()) entry["shape"] = file.shape;
         entry["content"] = file.content;
+        if (file.scale) entry["scale"] = *file.scale;
         list.push_back(entry);
     }
     return list;

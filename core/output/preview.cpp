@@ -8,7 +8,7 @@
 #include "core/output/hair_picture.h"
 #include "core/output/image_file.h"
 #include "core/output/latlong_picture.h"
-#include "core/output/map_files.h"
+#include "core/output/map_metadata.h"
 #include "core/output/tone.h"
 #include "core/output/versions.h"
 

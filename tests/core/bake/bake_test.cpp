@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/digest.h"
+#include "core/hair/hair_file.h"
 #include "tests/core/bake/small_inputs.h"
 
 namespace hairbake {
@@ -43,6 +44,7 @@ TEST(Bake, SameRequestGivesTheSameBytesForOneTwoAndSevenThreads) {
     const SmallInputs inputs;
     BakeRequest request = inputs.request();
     request.transmittance.direction_set = DirectionSet::random;
+    request.outputs = output_formats();
     bake_to(request, inputs.folder / "1", 1);
     const auto expected = contents(inputs.folder / "1");
     for (const int threads : {1, 2, 7}) {
@@ -103,6 +105,41 @@ TEST(Bake, HairAloneBakesTransmittanceAndEnvironmentAloneMaps) {
     for (const char* name : {"diffuse.npy", "specular.npy", "diffuse.exr", "specular_02_latlong.exr",
                              "environment_sh.json", "preview.png", "manifest.json"})
         EXPECT_TRUE(fs::exists(inputs.folder / "environment" / name)) << name;
+}
+
+TEST(Bake, WritesEveryOutputAndTheManifestKnowsItsDigestSizeAndScale) {
+    const SmallInputs inputs;
+    BakeRequest request = inputs.request();
+    request.outputs = {"ktx2", "dds", "raw", "glb", "vdb"};
+    request.environment_settings.exposure_stops = 20;  // beyond halves
+    bake_to(request, inputs.folder / "result");
+    const Json manifest = Json::parse(get(inputs.folder / "result" / "manifest.json"));
+    std::map<std::string, Json> files;
+    for (const Json& file : manifest["files"]) files[file["name"]] = file;
+    for (const char* name : {"diffuse.ktx2", "specular.ktx2", "diffuse.dds", "specular_02.dds", "maps.f16"})
+        EXPECT_GT(files[name].value("scale", 0.0), 1.0) << name;
+    for (const char* name : {"maps.json", "strands.bin", "strands.json", "hair.glb", "density.vdb"})
+        EXPECT_TRUE(files.contains(name) && !files[name].contains("scale")) << name;
+    for (const auto& [name, file] : files) {
+        EXPECT_EQ(file["sha256"], digest_of_file(inputs.folder / "result" / name)) << name;
+        EXPECT_EQ(file["bytes"], fs::file_size(inputs.folder / "result" / name)) << name;
+    }
+    EXPECT_EQ(files.size(), 12u + 2);  // 4 dds, 2 ktx2, 2 + 2 raw, glb, vdb; environment_sh.json and preview.png
+}
+
+TEST(Bake, AnEmptyModelHasNoDensityGridWhichIsAWarning) {
+    const test_support::TemporaryFolder folder;
+    HairModel none;
+    none.strand_begin = {0};
+    write_hair(none, folder / "none.hair");
+    BakeRequest request;
+    request.hair = (folder / "none.hair").string();
+    request.outputs = {"raw", "glb", "vdb"};
+    bake_to(request, folder / "result");
+    EXPECT_FALSE(fs::exists(folder / "result" / "density.vdb"));
+    EXPECT_TRUE(fs::exists(folder / "result" / "hair.glb"));
+    const std::string warnings = Json::parse(get(folder / "result" / "manifest.json"))["warnings"].dump();
+    EXPECT_NE(warnings.find("density.vdb is left out"), std::string::npos) << warnings;
 }
 
 TEST(Bake, StagesDoNotKnowOfEachOther) {
