@@ -5,8 +5,8 @@
 #include <cstdlib>
 
 #include "core/base/parallel.h"
+#include "core/base/spherical_harmonics.h"
 #include "core/environment/cube_map.h"
-#include "core/environment/spherical_harmonics.h"
 
 namespace hairbake {
 namespace {

@@ -59,9 +59,20 @@ Json environment_input(const BakeResult& result) {
     return block;
 }
 
+Json occluder_input(const BakeResult& result) {
+    const MeshTopology& topology = result.occluder_topology;
+    return {{"sha256", result.hair_inputs.occluder},
+            {"positions", result.occluder->positions.size()},
+            {"triangles", result.occluder->triangles.size()},
+            {"closed", topology.closed},
+            {"open_edges", topology.open_edges},
+            {"irregular_edges", topology.irregular_edges}};
+}
+
 Json inputs(const BakeResult& result) {
     Json block = Json::object();
     if (result.transmittance) block["hair"] = hair_input(result);
+    if (result.occluder) block["occluder"] = occluder_input(result);
     if (result.environment) block["environment"] = environment_input(result);
     return block;
 }

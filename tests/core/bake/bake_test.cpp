@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -56,6 +57,40 @@ TEST(Bake, SameRequestGivesTheSameBytesForOneTwoAndSevenThreads) {
         for (const auto& [name, bytes] : expected)
             EXPECT_TRUE(found.at(name) == bytes) << name << " differs with " << threads << " threads";
     }
+}
+
+TEST(Bake, AnOccluderDarkensTheHairAndTheManifestTellsWhatItIs) {
+    const SmallInputs inputs;
+    BakeRequest request = inputs.request();
+    request.environment.reset();
+    Progress progress;
+    BakeResult bare = bake(request, 2, progress);
+    request.occluder = (inputs.folder / "samples" / "head.obj").string();
+    for (const auto method : {TransmittanceMethod::volume, TransmittanceMethod::trace}) {
+        request.transmittance.method = method;
+        BakeResult result = bake(request, 2, progress);
+        EXPECT_NE(result.transmittance_key, bare.transmittance_key);
+        write_result(result, inputs.folder / "out", progress);
+        const Json manifest = Json::parse(get(inputs.folder / "out" / "manifest.json"));
+        const Json& occluder = manifest["inputs"]["occluder"];
+        EXPECT_EQ(occluder["sha256"], digest_of_file(*request.occluder));
+        EXPECT_EQ(occluder["triangles"], 36480);  // 96 rings of 192 columns: 2 x 192 x 95
+        EXPECT_EQ(occluder["closed"], true);
+        EXPECT_EQ(manifest["warnings"], Json::array());
+        // The hair of 3,000 vertices is thin: the head alone takes about half of a root's sky.
+        EXPECT_LT(manifest["transmittance"]["mean"].get<double>(), 0.9);
+        EXPECT_LT(result.transmittance->average[0], 0.55f);
+        EXPECT_LT(std::abs(manifest["error_bar"]["bias"].get<double>()), 0.05);
+    }
+    // Without its last triangle it is a shell.
+    std::string text = get(*request.occluder);
+    text.resize(text.rfind("\nf ") + 1);
+    std::ofstream(inputs.folder / "open.obj") << text;
+    request.occluder = (inputs.folder / "open.obj").string();
+    const BakeResult open = bake(request, 2, progress);
+    EXPECT_FALSE(open.occluder_topology.closed);
+    ASSERT_EQ(open.warnings.size(), 1u);
+    EXPECT_NE(open.warnings[0].find("3 of its"), std::string::npos) << open.warnings[0];
 }
 
 TEST(Bake, HairAloneBakesTransmittanceAndEnvironmentAloneMaps) {
