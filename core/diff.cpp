@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/exr_reader.h"
+#include "core/environment/image_file.h"
 #include "core/output/canvas.h"
 #include "core/output/file_sink.h"
 #include "core/output/image_file.h"
@@ -42,6 +42,20 @@ struct Sums {
     double mean() const { return first / values(); }
     Json relative() const { return mean() != 0 ? Json(rmse() / mean()) : Json(); }
 };
+
+ImageFile read_linear(const std::filesystem::path& file, Progress& progress) {
+    const auto check = [](int width, int height) {
+        constexpr int most = 16384;
+        if (width >= 1 && height >= 1 && width <= most && height <= most) return std::string();
+        return "the size is " + std::to_string(width) + " x " + std::to_string(height) +
+               "; allowed are 1 to 16384 pixels each";
+    };
+    ImageFile image = read_image_file(file, check, {0, 1}, progress);
+    if (image.integer)
+        throw Error(ErrorKind::bad_input,
+                    file.string() + " holds integers; allowed are linear pictures in floating point (OpenEXR)");
+    return image;
+}
 
 double rounded_up(double value) {
     if (!(value > 0) || !std::isfinite(value)) return 1;
@@ -92,12 +106,12 @@ void write_false_colors(const std::vector<Vec3f>& difference, int width, int hei
 }  // namespace
 
 std::string diff(const std::filesystem::path& first, const std::filesystem::path& second,
-                 const std::optional<std::filesystem::path>& picture, std::optional<double> scale) {
+                 const std::optional<std::filesystem::path>& picture, std::optional<double> scale, Progress& progress) {
     if (picture && picture->extension() != ".png")
         throw Error(ErrorKind::usage, "out is " + picture->string() + "; allowed is a name that ends in .png", "out");
     if (scale && !(*scale > 0 && std::isfinite(*scale)))
         throw Error(ErrorKind::usage, "scale is " + std::to_string(*scale) + "; allowed is a positive number", "scale");
-    const ExrPicture a = read_exr(first), b = read_exr(second);
+    const ImageFile a = read_linear(first, progress), b = read_linear(second, progress);
     if (a.width != b.width || a.height != b.height)
         throw Error(ErrorKind::bad_input, second.string() + " is " + std::to_string(b.width) + " x " +
                                               std::to_string(b.height) + " pixels; allowed is the size of " +

@@ -13,6 +13,7 @@
 #include "core/environment/light_set.h"
 #include "core/hair/strand_geometry.h"
 #include "core/hair/tangents.h"
+#include "core/irradiance/added_lights.h"
 #include "core/irradiance/irradiance_maps.h"
 #include "core/output/file_sink.h"
 #include "core/output/image_file.h"
@@ -47,8 +48,9 @@ Vec3d vector_of(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 /// The sum over lights, where the mode or the mesh needs it.
 std::optional<LightSum> make_lights(const RenderInput& input, const Progress& progress) {
     if (!input.environment) return {};
-    const double exponent = input.bake.irradiance.exponent;
-    return LightSum(make_light_set(*input.environment, light_resolution(exponent), progress), exponent);
+    const IrradianceSettings& settings = input.bake.irradiance;
+    LightSet lights = make_light_set(*input.environment, light_resolution(settings.exponent), progress);
+    return LightSum(with_directional_lights(std::move(lights), settings.lights), settings.exponent);
 }
 
 DirectionalTransmittance directional_of(const RenderRequest& request, const RenderInput& input) {
@@ -113,7 +115,7 @@ std::vector<std::pair<std::string, std::string>> describe(const RenderRequest& r
 /// Calls body(lighting) with the lighting of the mode.
 template <class Body>
 void with_lighting(const RenderRequest& request, const RenderInput& input, const StrandScene& scene,
-                   const std::optional<LightSum>& lights, const Body& body) {
+                   const std::optional<LightSum>& lights, Progress& progress, const Body& body) {
     VertexTransmittance average;
     if (request.transmittance) average.average = input.average;
     switch (request.mode) {
@@ -122,7 +124,7 @@ void with_lighting(const RenderRequest& request, const RenderInput& input, const
         case ShadingMode::brute:
             return body(*brute_lighting(average, *lights));
         case ShadingMode::reference:
-            return body(*reference_lighting(scene, average, *lights, request.light_samples));
+            return body(*reference_lighting(VertexRays(scene, progress), average, *lights, request.light_samples));
         case ShadingMode::directional: {
             const DirectionalTransmittance transmittance = directional_of(request, input);
             return body(*directional_lighting(transmittance, *lights));
@@ -133,7 +135,7 @@ void with_lighting(const RenderRequest& request, const RenderInput& input, const
 RenderedPicture render_input(const RenderRequest& request, const RenderInput& input, Progress& progress) {
     const StrandGeometry strands = make_strand_geometry(input.hair, input.bake.strand);
     const std::vector<Vec3f> tangents = vertex_tangents(input.hair);
-    const StrandScene scene(strands, progress);
+    const StrandScene scene(strands, progress, input.occluder ? &*input.occluder : nullptr);
     const FirstHits hits(scene, input.mesh ? &*input.mesh : nullptr);
     const std::optional<LightSum> lights = make_lights(input, progress);
     const Camera camera = camera_of(request, strands, input.mesh);
@@ -142,7 +144,7 @@ RenderedPicture render_input(const RenderRequest& request, const RenderInput& in
     RenderedPicture picture{
         request.frame.width, request.frame.height, request.frame.channel, {}, describe(request, input, camera, kd), 0,
         input.warnings};
-    with_lighting(request, input, scene, lights, [&](const FiberLighting& lighting) {
+    with_lighting(request, input, scene, lights, progress, [&](const FiberLighting& lighting) {
         RenderScene shown{hits, tangents, strands, lighting, kd, Vec3d(request.look.specular), nullptr, {}, nullptr};
         shown.mesh_lights = lights ? &*lights : nullptr;
         shown.mesh_albedo = vector_of(request.look.mesh_albedo);

@@ -36,9 +36,9 @@ struct RenderLook {
 
 struct RenderRequest {
     std::optional<std::string> result;  ///< result folder; without it the bake runs in memory
-    /// Without result: what to bake; hair and environment are given. With result: `hair` and `environment` say where
-    /// the files are that it was baked from (else: its transmittance.hair, and the paths in its manifest); nothing else
-    /// is looked at.
+    /// Without result: what to bake; hair and environment are given. With result: `hair`, `environment` and `occluder`
+    /// say where the files are that it was baked from (else: its transmittance.hair, and the paths in its manifest);
+    /// nothing else is looked at.
     BakeRequest bake;
     std::optional<std::string> mesh;         ///< OBJ file shown with the hair
     std::optional<std::string> camera_file;  ///< JSON (camera_json.h), instead of `orbit`

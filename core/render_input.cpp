@@ -6,6 +6,7 @@
 #include "core/base/digest.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/environment/environment_files.h"
 #include "core/environment/environment_reader.h"
 #include "core/hair/hair_file.h"
 #include "core/mesh/mesh_file.h"
@@ -21,7 +22,8 @@ bool needs_environment(const RenderRequest& request) {
 
 /// The file, after a look at whether it is the one that was baked.
 std::string checked(const std::string& file, const std::string& digest, const std::string& what) {
-    if (digest_of_file(file) != digest)
+    const std::string found = what == "environment" ? digest_of_environment(file) : digest_of_file(file);
+    if (found != digest)
         throw Error(ErrorKind::bad_input,
                     file + " is not the " + what + " that the result was baked from (its SHA-256 differs)", what);
     return file;
@@ -53,6 +55,16 @@ std::string environment_of(const RenderRequest& request, const StoredResult& sto
     return stored.environment_digest.empty() ? *file : checked(*file, stored.environment_digest, "environment");
 }
 
+std::string occluder_of(const RenderRequest& request, const StoredResult& stored) {
+    const auto& file = request.bake.occluder ? request.bake.occluder : stored.request.occluder;
+    if (!file || !fs::exists(*file))
+        throw Error(ErrorKind::usage,
+                    "the mode reference needs the occluder that " + *request.result +
+                        " was baked with: give the file (--occluder)",
+                    "occluder");
+    return checked(*file, stored.occluder_digest, "occluder");
+}
+
 RenderInput from_folder(const RenderRequest& request) {
     StoredResult stored = read_result(*request.result);
     if (stored.hair_digest.empty())
@@ -61,6 +73,8 @@ RenderInput from_folder(const RenderRequest& request) {
     input.bake = stored.request;
     input.bake.hair = hair_of(request, stored);
     if (needs_environment(request)) input.bake.environment = environment_of(request, stored);
+    if (!stored.occluder_digest.empty() && request.mode == ShadingMode::reference)
+        input.occluder = read_mesh(occluder_of(request, stored));
     input.hair = read_hair(*input.bake.hair);
     const bool needs_average = request.mode == ShadingMode::directional || request.transmittance;
     if (needs_average && stored.average.size() != input.hair.vertex_count())
@@ -89,6 +103,7 @@ RenderInput from_bake(const RenderRequest& request, Progress& progress) {
     if (request.mode != ShadingMode::baked) wanted.environment.reset();
     BakeResult result = bake(wanted, thread_count(), progress);
     input.hair = result.hair ? std::move(*result.hair) : read_hair(*request.bake.hair);
+    input.occluder = std::move(result.occluder);
     input.average = std::move(result.transmittance->average);
     input.sh = std::move(result.transmittance->sh);
     input.bent_cone = std::move(result.transmittance->bent_cone);

@@ -17,8 +17,9 @@ struct RenderInput {
     BakeRequest bake;  ///< as it ran; paths as they were read
     HairModel hair;
     std::optional<EnvironmentMap> environment;  ///< where mode, background or mesh need it
-    std::optional<TriangleMesh> mesh;
-    std::vector<float> average;  ///< [V]
+    std::optional<TriangleMesh> mesh;           ///< shown
+    std::optional<TriangleMesh> occluder;       ///< stops light, with mode reference
+    std::vector<float> average;                 ///< [V]
     std::vector<float> sh, bent_cone;
     std::optional<IrradianceMaps> maps;  ///< with mode baked
     std::vector<std::string> warnings;

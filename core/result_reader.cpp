@@ -141,6 +141,7 @@ StoredResult read_result(const fs::path& folder) {
         validate(result.request);
         result.hair_digest = input_digest(manifest, "hair");
         result.environment_digest = input_digest(manifest, "environment");
+        result.occluder_digest = input_digest(manifest, "occluder");
         const ResultFiles files(folder, manifest);
         result.hair_file_digest = files.digest("transmittance.hair");
         read_transmittance(files, result);

@@ -14,7 +14,7 @@ void add_diff_command(CLI::App& app, Action& action) {
         std::optional<double> scale;
         bool json = false;
     };
-    CLI::App* command = app.add_subcommand("diff", "Difference of two OpenEXR pictures (second minus first)");
+    CLI::App* command = app.add_subcommand("diff", "Difference of two linear pictures (second minus first)");
     const auto options = std::make_shared<Options>();
     command->add_option("first", options->first, "picture")->required()->type_name("A.exr");
     command->add_option("second", options->second, "picture")->required()->type_name("B.exr");
@@ -25,7 +25,8 @@ void add_diff_command(CLI::App& app, Action& action) {
         action = [options] {
             Progress progress;
             const SignalWatch watch(progress, [] {});
-            const std::string report = diff(options->first, options->second, options->picture, options->scale);
+            const std::string report =
+                diff(options->first, options->second, options->picture, options->scale, progress);
             std::fputs(options->json ? (report + "\n").c_str() : diff_as_lines(report).c_str(), stdout);
         };
     });

@@ -115,6 +115,8 @@ void add_scene_options(CLI::App& command, Options& options) {
         ->type_name("FILE");
     command.add_option("--hair", request.bake.hair, "hair model; with a result: where its hair is");
     command.add_option("--env", request.bake.environment, "HDR environment; with a result: where its environment is");
+    command.add_option("--occluder", request.bake.occluder,
+                       "mesh that stops light; with a result: where its occluder is");
     command.add_option("--mesh", request.mesh, "OBJ file shown with the hair (a head)");
     command.add_option("--preset", options.preset, "without a result: preset of the bake");
     command.add_option("--set", options.settings, "without a result: any field of the bake")

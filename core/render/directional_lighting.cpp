@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <array>
 
-#include "core/environment/spherical_harmonics.h"
+#include "core/base/spherical_harmonics.h"
 #include "core/render/fiber_lighting.h"
 
 namespace hairbake {

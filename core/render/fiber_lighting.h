@@ -8,7 +8,7 @@
 #include "core/base/progress.h"
 #include "core/base/vec.h"
 #include "core/irradiance/irradiance_maps.h"
-#include "core/reference/strand_scene.h"
+#include "core/reference/vertex_rays.h"
 #include "core/render/first_hit.h"
 #include "core/render/light_sum.h"
 #include "core/render/vertex_transmittance.h"
@@ -60,7 +60,7 @@ std::unique_ptr<FiberLighting> directional_lighting(const DirectionalTransmittan
 /// rules, from one of the segment's two vertices (drawn, so that the mean is linear between them as A is). Unbiased.
 /// `guess` only makes it less noisy: it is a control variate for the lights' colours, so that the answer is exact where
 /// T = guess everywhere.
-std::unique_ptr<FiberLighting> reference_lighting(const StrandScene& scene, const VertexTransmittance& guess,
+std::unique_ptr<FiberLighting> reference_lighting(VertexRays rays, const VertexTransmittance& guess,
                                                   const LightSum& lights, int light_samples);
 
 }  // namespace hairbake

@@ -80,10 +80,8 @@ void FirstHits::build(const TriangleMesh& mesh) {
 
 Vec3d FirstHits::normal_at(std::uint32_t triangle, double u, double v) const {
     const auto& [a, b, c] = mesh_.triangles[triangle];
-    const Vec3d origin(mesh_.positions[a]);
-    Vec3d normal = cross(Vec3d(mesh_.positions[b]) - origin, Vec3d(mesh_.positions[c]) - origin);
-    if (mesh_.normals.size() == mesh_.positions.size())
-        normal = Vec3d(mesh_.normals[a]) * (1 - u - v) + Vec3d(mesh_.normals[b]) * u + Vec3d(mesh_.normals[c]) * v;
+    const Vec3d normal =
+        Vec3d(mesh_.normals[a]) * (1 - u - v) + Vec3d(mesh_.normals[b]) * u + Vec3d(mesh_.normals[c]) * v;
     return length(normal) > 0 ? normalized(normal) : Vec3d();
 }
 

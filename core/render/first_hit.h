@@ -36,7 +36,7 @@ public:
 
 private:
     void build(const TriangleMesh& mesh);
-    /// Interpolated between the vertices' normals; the triangle's own where the mesh has none; 0 where that is none.
+    /// Interpolated between the vertices' normals; 0 where they cancel.
     Vec3d normal_at(std::uint32_t triangle, double u, double v) const;
 
     const StrandScene& strands_;

@@ -1,9 +1,9 @@
 // The mode that knows everything: traced transmittance inside the sum over the lights.
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "core/base/random.h"
-#include "core/reference/vertex_ray.h"
 #include "core/render/fiber_lighting.h"
 
 namespace hairbake {
@@ -65,13 +65,11 @@ private:
 
 class ReferenceLighting : public FiberLighting {
 public:
-    ReferenceLighting(const StrandScene& scene, const VertexTransmittance& guess, const LightSum& lights,
-                      int light_samples)
-        : scene_(scene), guess_(guess), lights_(lights), light_samples_(light_samples) {}
+    ReferenceLighting(VertexRays rays, const VertexTransmittance& guess, const LightSum& lights, int light_samples)
+        : rays_(std::move(rays)), guess_(guess), lights_(lights), light_samples_(light_samples) {}
 
     void light(std::span<const StrandPoint> points, std::span<FiberLight> result,
                const Progress& progress) const override {
-        VertexRay ray(scene_);
         LightWeights diffuse(lights_), specular(lights_);
         KernelBlock kernels;
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -87,8 +85,8 @@ public:
             Random random(point.seed);
             const double guess = guess_.at(point.place);
             FiberLight& light = result[i];
-            light.diffuse = arriving(diffuse, unhidden.diffuse, point, guess, random, ray);
-            light.specular = arriving(specular, unhidden.specular, point, guess, random, ray);
+            light.diffuse = arriving(diffuse, unhidden.diffuse, point, guess, random);
+            light.specular = arriving(specular, unhidden.specular, point, guess, random);
             const double all = sum_of(unhidden.diffuse);
             light.transmittance = all > 0 ? sum_of(light.diffuse) / all : 1;
         }
@@ -98,20 +96,20 @@ private:
     /// Estimates the sum of flux * kernel * T over the lights. A light drawn stands for its flux over its energy, a
     /// colour, times the total energy; that colour times `guess` is replaced by its known mean, the unhidden sum.
     Vec3d arriving(const LightWeights& weights, const Vec3d& unhidden, const StrandPoint& point, double guess,
-                   Random& random, VertexRay& ray) const {
+                   Random& random) const {
         const double total = weights.total();
         if (!(total > 0)) return {};
         Vec3d sum;
         weights.draw(light_samples_, random, [&](std::size_t light) {
             const std::uint32_t vertex = point.place.vertex + (random.next() < point.place.u ? 1 : 0);
             const Vec3d flux(lights_.flux(light));
-            const double t = double(ray.transmittance(vertex, lights_.direction(light)));
+            const double t = double(rays_.transmittance(vertex, lights_.direction(light)));
             sum += flux * ((t - guess) / sum_of(flux));
         });
         return sum * (total / light_samples_) + unhidden * guess;
     }
 
-    const StrandScene& scene_;
+    VertexRays rays_;
     const VertexTransmittance& guess_;
     const LightSum& lights_;
     int light_samples_;
@@ -119,9 +117,9 @@ private:
 
 }  // namespace
 
-std::unique_ptr<FiberLighting> reference_lighting(const StrandScene& scene, const VertexTransmittance& guess,
+std::unique_ptr<FiberLighting> reference_lighting(VertexRays rays, const VertexTransmittance& guess,
                                                   const LightSum& lights, int light_samples) {
-    return std::make_unique<ReferenceLighting>(scene, guess, lights, light_samples);
+    return std::make_unique<ReferenceLighting>(std::move(rays), guess, lights, light_samples);
 }
 
 }  // namespace hairbake

@@ -1,5 +1,5 @@
 """Sections about the irradiance maps and the decoupling of light and transmittance."""
-from settings import SKIES
+from settings import CROWN_VIEW, SKIES
 
 
 def percent(value):
@@ -23,9 +23,10 @@ def specular_maps(scene, page):
     for maps in (33, 17, 9, 5):
         folder, manifest = scene.bake(f"maps-{maps}", "sky", hair, irradiance__specular_maps=maps)
         if not pictures:
-            brute = scene.picture("specular-brute", folder, *arguments, "--mode", "brute", hair=hair)
+            brute = scene.picture("specular-brute", folder, *arguments, "--mode", "brute", hair=hair, exposure="2",
+                                  view=CROWN_VIEW)
             pictures.append((f"{brute}.png", "every light of the environment, exact kernel"))
-        baked = scene.picture(f"specular-{maps}", folder, *arguments, hair=hair)
+        baked = scene.picture(f"specular-{maps}", folder, *arguments, hair=hair, exposure="2", view=CROWN_VIEW)
         figures = scene.hairbake.diff(brute, baked, scene.specular_scale)
         pictures += [(f"{baked}.png", f"{maps} maps"), (figures["picture"], f"{maps} maps minus every light")]
         rows.append([maps, where_lit(figures), f"{figures['max_abs']:.3g}",
@@ -59,8 +60,8 @@ def sh_maps(scene, page):
                          percent(maps["predicted_error"]["specular"]), percent(rms("specular_"))])
             if sky == "studio" and bands in ("published", 24):
                 arguments = ["--channel", "specular", "--no-background", "--no-transmittance"]
-                truth = scene.picture("sh-exact", exact, *arguments)
-                shown = scene.picture(f"sh-{bands}", folder, *arguments)
+                truth = scene.picture("sh-exact", exact, *arguments, exposure="2")
+                shown = scene.picture(f"sh-{bands}", folder, *arguments, exposure="2")
                 figures = scene.hairbake.diff(truth, shown, scene.specular_scale)
                 pictures += [(f"{truth}.png", "exact maps, studio")] if not pictures else []
                 pictures += [(f"{shown}.png", f"SH, {maps['sh_bands']['specular']} bands"),

@@ -12,7 +12,8 @@ def real_data(scene, page, data):
         sky = data / "env" / f"{name}.hdr"
         folder = scene.folder / "bake" / f"sintel-{name}"
         scene.hairbake.bake(folder, hair, sky)
-        show = lambda short, *words, source=folder: scene.picture(short, source, *words, hair=hair, exposure="auto")
+        show = lambda short, *words, source=folder: scene.picture(short, source, *words, hair=hair, exposure="auto",
+                                                                     view=("--azimuth", "35", "--elevation", "8"))
         beauty = show(f"sintel-{name}", "--mesh", head)
         baked = show(f"sintel-{name}-baked", "--no-background", "--mesh", head, "--mesh-albedo", "0,0,0")
         truth = show(f"sintel-{name}-reference", "--no-background", "--mesh", head, "--mesh-albedo", "0,0,0", "--mode",

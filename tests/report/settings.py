@@ -23,6 +23,10 @@ class Size:
                     reference_vertices=20)
 
 
+SAMPLE_VIEW = ("--target", "0,-6,0", "--distance", "62", "--azimuth", "35", "--elevation", "8")
+CROWN_VIEW = ("--target", "0,0,0", "--distance", "46", "--azimuth", "35", "--elevation", "42")
+
+
 class Scene:
     """The sample data, and what all bakes and pictures of them share."""
 
@@ -49,7 +53,7 @@ class Scene:
         manifest = self.hairbake.bake(folder, hair or self.hair, self.sky(sky) if sky else None, **{**defaults, **fields})
         return folder, manifest
 
-    def picture(self, name, folder, *arguments, hair=None, exposure="0", view=("--azimuth", "35", "--elevation", "8")):
+    def picture(self, name, folder, *arguments, hair=None, exposure="0", view=SAMPLE_VIEW):
         """Renders a result folder; gives the picture's name without ending."""
         size = self.size
         return self.hairbake.render(self.folder / "pictures" / name, folder, "--hair", hair or self.hair, "--size",

@@ -9,7 +9,7 @@
 #include "core/base/digest.h"
 #include "core/base/error.h"
 #include "core/camera_json.h"
-#include "core/exr_reader.h"
+#include "core/environment/image_file.h"
 #include "core/result_reader.h"
 #include "tests/core/bake/small_inputs.h"
 
@@ -131,7 +131,8 @@ TEST_F(RenderedResult, IsWrittenAsExrToTheLastBitAndAsPng) {
     const RenderedPicture picture = render(request, 0, progress);
     write_picture(picture, 0, inputs.folder / "a.exr");
     write_picture(picture, 0, inputs.folder / "a.exr");  // replaces
-    const ExrPicture read = read_exr(inputs.folder / "a.exr");
+    const ImageFile read = read_image_file(
+        inputs.folder / "a.exr", [](int, int) { return std::string(); }, {}, progress);
     EXPECT_EQ(read.width, 24);
     EXPECT_TRUE(read.pixels == picture.pixels);
     write_picture(picture, automatic_exposure(picture), inputs.folder / "a.png");

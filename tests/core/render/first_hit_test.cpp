@@ -53,17 +53,5 @@ TEST(FirstHit, OfAMeshHidesStrandsBehindItAndNotBeforeIt) {
     EXPECT_EQ(hits.find({5, 0, 9}, {0, 0, -1}).kind, FirstHit::Kind::nothing);
 }
 
-TEST(FirstHit, OfAMeshWithoutNormalsHasTheTrianglesOwn) {
-    StrandModel model;
-    model.add({{-1, 0, 0}, {1, 0, 0}}, 0.2);
-    const StrandGeometry strands = model.geometry();
-    Progress progress;
-    const StrandScene scene(strands, progress);
-    TriangleMesh mesh = square(1);
-    mesh.normals.clear();
-    const FirstHits hits(scene, &mesh);
-    EXPECT_NEAR(hits.find({0.5, 0.3, 9}, {0, 0, -1}).normal.z, 1, 1e-6);
-}
-
 }  // namespace
 }  // namespace hairbake

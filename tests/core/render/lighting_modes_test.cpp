@@ -98,7 +98,7 @@ TEST(ReferenceMode, IsBruteForceWhereNothingHidesTheLight) {
     const VertexTransmittance open;
     const auto brute = light(*brute_lighting(open, lights), points);
     for (const int samples : {1, 16}) {
-        const auto reference = light(*reference_lighting(scene, open, lights, samples), points);
+        const auto reference = light(*reference_lighting(VertexRays(scene, progress), open, lights, samples), points);
         for (std::size_t i = 0; i < points.size(); ++i) {
             EXPECT_LT(length(reference[i].diffuse - brute[i].diffuse), 2e-5 * length(brute[i].diffuse));
             EXPECT_LT(length(reference[i].specular - brute[i].specular), 2e-5 * length(brute[i].specular));
@@ -127,7 +127,7 @@ TEST(ReferenceMode, AgreesWithTheSumOverAShadowRayToEveryLight) {
     for (std::size_t i = 0; i < points.size(); ++i) points[i].place = {std::uint32_t(25 * i + 1), 0.25};
     const std::vector<float> half(strands.vertex_count(), 0.5f);
     const VertexTransmittance guess{half};
-    const auto found = light(*reference_lighting(scene, guess, lights, 40000), points);
+    const auto found = light(*reference_lighting(VertexRays(scene, progress), guess, lights, 40000), points);
     for (std::size_t i = 0; i < points.size(); ++i) {
         Vec3d diffuse, specular, unhidden;
         for (std::size_t k = 0; k < set.size(); ++k) {

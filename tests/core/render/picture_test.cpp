@@ -74,8 +74,8 @@ TEST(Picture, OfHairUnderAWhiteSkyIsKdPiSquaredPlusKsSOfThePixelsAngle) {
     const Camera camera = look_at({0, 0, 10}, {6, 0, 4}, {0, 1, 0}, 20);
     const FrameSettings frame = frame_of(24, 1);
     const auto brute = studio.render(*brute_lighting(studio.open, studio.lights), camera, frame);
-    const auto reference =
-        studio.render(*reference_lighting(studio.scene, studio.open, studio.lights, 2), camera, frame);
+    const auto reference = studio.render(
+        *reference_lighting(VertexRays(studio.scene, studio.progress), studio.open, studio.lights, 2), camera, frame);
     const auto baked = studio.render(*baked_lighting(studio.open, maps), camera, frame);
     double lowest = 10, highest = -1;
     for (int y = 0; y < 24; ++y)
@@ -121,9 +121,10 @@ TEST(Picture, OfATurnedSceneUnderATurnedSkyIsTheSame) {
     EXPECT_LE(
         compare(brute, turned.render(*brute_lighting(turned.open, turned.lights), turned_camera, frame, &turned_sky)),
         5u);
-    const auto traced =
-        plain.render(*reference_lighting(plain.scene, plain.open, plain.lights, 8), camera, frame, &sky);
-    EXPECT_LE(compare(traced, turned.render(*reference_lighting(turned.scene, turned.open, turned.lights, 8),
+    const auto traced = plain.render(
+        *reference_lighting(VertexRays(plain.scene, plain.progress), plain.open, plain.lights, 8), camera, frame, &sky);
+    EXPECT_LE(compare(traced, turned.render(*reference_lighting(VertexRays(turned.scene, turned.progress), turned.open,
+                                                                turned.lights, 8),
                                             turned_camera, frame, &turned_sky)),
               12u);
     EXPECT_GT(compare(brute, traced), 200u);  // the strands do shadow each other
@@ -135,7 +136,7 @@ TEST(Picture, IsTheSameToTheLastBitForAnyNumberOfThreadsAndAnotherForAnotherSeed
     const EnvironmentMap sky = testing::noise_map(64, 7);
     Studio studio(thicket().geometry(), sky);
     const Camera camera = look_at({0, 0, 6}, {}, {0, 1, 0}, 25);
-    const auto lighting = reference_lighting(studio.scene, studio.open, studio.lights, 4);
+    const auto lighting = reference_lighting(VertexRays(studio.scene, studio.progress), studio.open, studio.lights, 4);
     FrameSettings frame{37, 29, 3, 1, Channel::beauty};  // tiles that are cut off at the edges
     std::vector<Vec3f> one;
     with_threads(1, [&] { one = studio.render(*lighting, camera, frame, &sky); });
