@@ -4,6 +4,7 @@
 #include <fstream>
 #include <new>
 #include <numeric>
+#include <utility>
 
 #include "core/base/digest.h"
 #include "core/base/direction_set.h"
@@ -11,6 +12,7 @@
 #include "core/environment/environment_reader.h"
 #include "core/hair/hair_file.h"
 #include "core/hair/strand_geometry.h"
+#include "core/mesh/mesh_file.h"
 #include "core/output/manifest.h"
 #include "core/output/result_files.h"
 #include "core/output/result_folder.h"
@@ -50,22 +52,31 @@ HairFacts facts_of(const StrandGeometry& strands) {
             strands.degenerate_segment_count, strands.bounds_min,     strands.bounds_max};
 }
 
-/// A of every vertex by tracing the true strands.
-Transmittance trace_all(const StrandScene& scene, const TransmittanceSettings& settings, Progress& progress) {
+/// The answers of the stage by tracing the true strands.
+Transmittance trace_all(const StrandScene& scene, const TriangleMesh* receiver, const TransmittanceSettings& settings,
+                        Progress& progress) {
     std::vector<std::uint32_t> vertices(scene.strands().vertex_count());
     std::iota(vertices.begin(), vertices.end(), 0u);
     const auto directions = make_directions(settings.direction_set, settings.directions, settings.seed);
     Transmittance transmittance;
-    transmittance.average = trace_transmittance(scene, vertices, directions, progress);
+    DirectionalMeans means =
+        trace_directional(scene, vertices, directions, settings.sh_bands, settings.bent_cone, progress);
+    transmittance.average = std::move(means.average);
+    transmittance.sh = std::move(means.sh);
+    transmittance.bent_cone = std::move(means.bent_cone);
+    if (receiver) transmittance.receiver = trace_receiver(scene, *receiver, directions, progress);
     transmittance.directions = settings.directions;
     return transmittance;
 }
 
 void read_hair_stage(BakeResult& result, Progress& progress) {
     run_stage(result, progress, "read_hair", [&] {
-        result.hair_inputs.hair = digest_of_file(*result.request.hair);
+        const BakeRequest& request = result.request;
+        result.hair_inputs.hair = digest_of_file(*request.hair);
+        if (request.receiver) result.hair_inputs.receiver = digest_of_file(*request.receiver);
         result.transmittance_key = transmittance_key(result.hair_inputs, result.request);
-        result.hair = read_hair(*result.request.hair);
+        result.hair = read_hair(*request.hair);
+        if (request.receiver) result.receiver = read_mesh(*request.receiver);
     });
 }
 
@@ -74,13 +85,17 @@ void transmittance_stage(BakeResult& result, Progress& progress) {
     const TransmittanceSettings& settings = result.request.transmittance;
     StrandGeometry strands;
     std::optional<StrandScene> scene;
+    const TriangleMesh* receiver = result.receiver ? &*result.receiver : nullptr;
     run_stage(result, progress, "transmittance", [&] {
         strands = make_strand_geometry(*result.hair, result.request.strand);
         if (settings.method == TransmittanceMethod::trace) {
             scene.emplace(strands, progress);
-            result.transmittance = trace_all(*scene, settings, progress);
+            result.transmittance = trace_all(*scene, receiver, settings, progress);
         } else {
-            result.transmittance = bake_transmittance_volume({strands}, settings, progress);
+            TransmittanceScene baked{strands};
+            baked.receiver = receiver;
+            baked.receiver_is_occluder = receiver && result.hair_inputs.receiver == result.hair_inputs.occluder;
+            result.transmittance = bake_transmittance_volume(baked, settings, progress);
         }
     });
     result.hair_facts = facts_of(strands);

@@ -24,7 +24,12 @@ std::vector<WrittenFile> write_files(BakeResult& result, const std::filesystem::
     };
     if (result.transmittance) {
         const std::vector<float>& average = result.transmittance->average;
-        if (request.wants("npy")) files.push_back(write_transmittance_npy(average, folder));
+        if (request.wants("npy")) {
+            const TransmittanceSettings& settings = request.transmittance;
+            files.push_back(write_transmittance_npy(average, folder));
+            append(files, write_directional_npy(*result.transmittance, settings.sh_bands, settings.bent_cone,
+                                                request.receiver.has_value(), folder));
+        }
         if (request.wants("hair")) files.push_back(write_transmittance_hair(*result.hair, average, folder));
     }
     step(0.2);

@@ -22,6 +22,7 @@ struct RayPath {
     float per_slice;              ///< length of the way through one slice, in voxels
     std::array<float, 6> square;  ///< l l^T, off-diagonal entries doubled: l.T.l = square . T
     Vec3f direction;
+    std::array<float, SweepDirection::most_weights> weights;
     int base_u, base_v;  ///< ray stored first is (base_u, base_v)
     int stride, rows;
 
@@ -101,6 +102,13 @@ HWY_INLINE V depth_at(const RayPath& path, const float* depth, const float* slab
     return hn::MulAdd(inside, hn::GatherIndex(d, slab, texel), before);
 }
 
+/// Adds value * scale to the integers at `sum`.
+template <class V>
+HWY_INLINE void add_fixed(V value, V scale, std::int32_t* sum) {
+    const I di;
+    hn::StoreU(hn::Add(hn::LoadU(di, sum), hn::NearestInt(hn::Mul(value, scale))), di, sum);
+}
+
 /// Reads every slot of slice s before the slice is added to the rays.
 void read_slots(const SliceLayout& layout, int s, bool ascending, std::span<const RayPath> paths, float scale,
                 const SweepScratch& scratch, SweepSums& sums) {
@@ -115,42 +123,101 @@ void read_slots(const SliceLayout& layout, int s, bool ascending, std::span<cons
         // Share of the slice between the vertex and the light's side of it.
         const auto inside = ascending ? hn::Sub(hn::Set(d, static_cast<float>(s + 1)), along)
                                       : hn::Sub(along, hn::Set(d, static_cast<float>(s)));
-        auto t0 = hn::Zero(d), tx = t0, ty = t0, tz = t0;
+        alignas(64) float t[kSweepLanes][16];
         for (std::size_t k = 0; k < paths.size(); ++k) {
             const auto depth =
                 depth_at(paths[k], scratch.depth[k].data(), scratch.slab[k].data(), u, v, along, inside, texel);
-            const auto t = hn::Exp(d, hn::Neg(depth));
-            t0 = hn::Add(t0, t);
-            tx = hn::MulAdd(t, hn::Set(d, paths[k].direction.x), tx);
-            ty = hn::MulAdd(t, hn::Set(d, paths[k].direction.y), ty);
-            tz = hn::MulAdd(t, hn::Set(d, paths[k].direction.z), tz);
+            hn::Store(hn::Exp(d, hn::Neg(depth)), d, t[k]);
         }
-        const auto add = [&](std::size_t component, auto value) {
-            std::int32_t* sum = &sums.values[component * sums.slots + i];
-            hn::StoreU(hn::Add(hn::LoadU(di, sum), hn::NearestInt(hn::Mul(value, scale_v))), di, sum);
-        };
-        add(0, t0);
-        add(1, tx);
-        add(2, ty);
-        add(3, tz);
+        for (std::size_t c = 0; c < sums.components; ++c) {
+            auto value = hn::Zero(d);
+            for (std::size_t k = 0; k < paths.size(); ++k)
+                value = hn::MulAdd(hn::Load(d, t[k]), hn::Set(d, paths[k].weights[c]), value);
+            add_fixed(value, scale_v, &sums.values[c * sums.slots + i]);
+        }
     }
 }
 
-void walk(const SliceLayout& layout, std::span<const RayPath> paths, bool ascending, float scale, SweepScratch& scratch,
-          SweepSums& sums) {
-    for (int step = 0; step < layout.slices; ++step) {
-        // Light comes from the upper end when the direction ascends along the axis.
-        const int s = ascending ? layout.slices - 1 - step : step;
-        const std::uint32_t begin = layout.tile_begin[static_cast<std::size_t>(s)];
-        const std::uint32_t end = layout.tile_begin[static_cast<std::size_t>(s) + 1];
-        if (begin == end) continue;
-        const auto at = [&](std::uint32_t tile) { return std::size_t{SliceLayout::tile_texels} * (tile - begin); };
-        for (std::size_t k = 0; k < paths.size(); ++k)
-            if (scratch.slab[k].size() < at(end)) scratch.slab[k].resize(at(end));
-        for (std::uint32_t tile = begin; tile < end; ++tile) fill_slab(layout, tile, at(tile), paths, scratch);
-        read_slots(layout, s, ascending, paths, scale, scratch, sums);
-        for (std::uint32_t tile = begin; tile < end; ++tile) add_slab(layout, tile, at(tile), s, paths, scratch);
+/// Optical depth of a group of receiver slots along one path: no ray passes a point outside the lattice, and a point
+/// without a texel has nothing in its own voxel.
+template <class V>
+HWY_INLINE V receiver_depth(const RayPath& path, const float* depth, const float* slab, V u, V v, V s, V inside,
+                            hn::Vec<I> texel) {
+    const F d;
+    const I di;
+    const auto ray_u =
+        hn::Sub(hn::NegMulAdd(s, hn::Set(d, path.slope_u), u), hn::Set(d, static_cast<float>(path.base_u)));
+    const auto ray_v =
+        hn::Sub(hn::NegMulAdd(s, hn::Set(d, path.slope_v), v), hn::Set(d, static_cast<float>(path.base_v)));
+    const auto zero = hn::Zero(d);
+    const auto met = hn::And(hn::And(hn::Ge(ray_u, zero), hn::Lt(ray_u, hn::Set(d, static_cast<float>(path.stride)))),
+                             hn::And(hn::Ge(ray_v, zero), hn::Lt(ray_v, hn::Set(d, static_cast<float>(path.rows)))));
+    const auto column = hn::ConvertTo(di, hn::IfThenElseZero(met, ray_u));
+    const auto row = hn::ConvertTo(di, hn::IfThenElseZero(met, ray_v));
+    const auto at = hn::Add(hn::Mul(row, hn::Set(di, path.stride)), column);
+    const auto before = hn::IfThenElseZero(met, hn::GatherIndex(d, depth, at));
+    const auto has_texel = hn::RebindMask(d, hn::Gt(texel, hn::Set(di, ReceiverSlots::no_texel)));
+    const auto own = hn::IfThenElseZero(has_texel, hn::GatherIndex(d, slab, hn::Max(texel, hn::Zero(di))));
+    return hn::MulAdd(hn::IfThenElseZero(has_texel, inside), own, before);
+}
+
+/// Reads the receiver's slots of slice s, -1 to layout.slices, before the slice is added to the rays.
+void read_receivers(const ReceiverSlots& slots, int s, bool ascending, std::span<const RayPath> paths, float scale,
+                    const SweepScratch& scratch, SweepSums& sums) {
+    const F d;
+    const I di;
+    const auto scale_v = hn::Set(d, scale), zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    const std::size_t end = slots.begin[static_cast<std::size_t>(s + 2)];
+    for (std::size_t i = slots.begin[static_cast<std::size_t>(s + 1)]; i < end; i += hn::Lanes(d)) {
+        const auto u = hn::LoadU(d, &slots.u[i]), v = hn::LoadU(d, &slots.v[i]), along = hn::LoadU(d, &slots.s[i]);
+        const auto nx = hn::LoadU(d, &slots.normal_x[i]), ny = hn::LoadU(d, &slots.normal_y[i]),
+                   nz = hn::LoadU(d, &slots.normal_z[i]);
+        const auto texel = hn::LoadU(di, &slots.texel[i]);
+        const auto inside = ascending ? hn::Sub(hn::Set(d, static_cast<float>(s + 1)), along)
+                                      : hn::Sub(along, hn::Set(d, static_cast<float>(s)));
+        auto plain = zero, weighted = zero, weight = zero, cosine = zero;
+        for (std::size_t k = 0; k < paths.size(); ++k) {
+            const Vec3f& l = paths[k].direction;
+            const auto n_dot_l = hn::Max(
+                zero, hn::MulAdd(nx, hn::Set(d, l.x), hn::MulAdd(ny, hn::Set(d, l.y), hn::Mul(nz, hn::Set(d, l.z)))));
+            const auto above = hn::IfThenElseZero(hn::Gt(n_dot_l, zero), one);
+            const auto depth =
+                receiver_depth(paths[k], scratch.depth[k].data(), scratch.slab[k].data(), u, v, along, inside, texel);
+            const auto t = hn::Exp(d, hn::Neg(depth));
+            plain = hn::MulAdd(above, t, plain);
+            weighted = hn::MulAdd(n_dot_l, t, weighted);
+            weight = hn::Add(weight, above);
+            cosine = hn::Add(cosine, n_dot_l);
+        }
+        std::int32_t* sum = &sums.values[i];
+        add_fixed(plain, scale_v, sum);
+        add_fixed(weighted, scale_v, sum + sums.slots);
+        add_fixed(weight, scale_v, sum + 2 * sums.slots);
+        add_fixed(cosine, scale_v, sum + 3 * sums.slots);
     }
+}
+
+void walk_slice(const SliceLayout& layout, const ReceiverSlots* receivers, int s, std::span<const RayPath> paths,
+                bool ascending, float scale, SweepScratch& scratch, SweepTotals& totals) {
+    const bool in_grid = s >= 0 && s < layout.slices;
+    const std::uint32_t begin = in_grid ? layout.tile_begin[static_cast<std::size_t>(s)] : 0;
+    const std::uint32_t end = in_grid ? layout.tile_begin[static_cast<std::size_t>(s) + 1] : 0;
+    const auto at = [&](std::uint32_t tile) { return std::size_t{SliceLayout::tile_texels} * (tile - begin); };
+    for (std::size_t k = 0; k < paths.size(); ++k)
+        if (scratch.slab[k].size() < at(end)) scratch.slab[k].resize(at(end));
+    for (std::uint32_t tile = begin; tile < end; ++tile) fill_slab(layout, tile, at(tile), paths, scratch);
+    if (begin < end && totals.vertices.slots > 0)
+        read_slots(layout, s, ascending, paths, scale, scratch, totals.vertices);
+    if (totals.receivers.slots > 0) read_receivers(*receivers, s, ascending, paths, scale, scratch, totals.receivers);
+    for (std::uint32_t tile = begin; tile < end; ++tile) add_slab(layout, tile, at(tile), s, paths, scratch);
+}
+
+void walk(const SliceLayout& layout, const ReceiverSlots* receivers, std::span<const RayPath> paths, bool ascending,
+          float scale, SweepScratch& scratch, SweepTotals& totals) {
+    // Light comes from the upper end when the direction ascends along the axis.
+    for (int step = -1; step <= layout.slices; ++step)
+        walk_slice(layout, receivers, ascending ? layout.slices - 1 - step : step, paths, ascending, scale, scratch,
+                   totals);
 }
 
 }  // namespace hairbake::HWY_NAMESPACE
@@ -169,8 +236,9 @@ void cover(float slope, int slices, int size, int& base, int& count) {
     count = size - std::min(first, last) + 2 - base;
 }
 
-RayPath make_path(const SliceLayout& layout, const Vec3d& l) {
+RayPath make_path(const SliceLayout& layout, const SweepDirection& direction) {
     RayPath path;
+    const Vec3d& l = direction.l;
     const double major = l[layout.axis];
     path.slope_u = static_cast<float>(l[layout.axis_u] / major);
     path.slope_v = static_cast<float>(l[layout.axis_v] / major);
@@ -178,6 +246,8 @@ RayPath make_path(const SliceLayout& layout, const Vec3d& l) {
     const Vec3f f(l);
     path.square = {f.x * f.x, f.y * f.y, f.z * f.z, 2 * f.x * f.y, 2 * f.x * f.z, 2 * f.y * f.z};
     path.direction = f;
+    path.weights.fill(0);
+    std::copy(direction.weights.begin(), direction.weights.end(), path.weights.begin());
     cover(path.slope_u, layout.slices, layout.size_u, path.base_u, path.stride);
     cover(path.slope_v, layout.slices, layout.size_v, path.base_v, path.rows);
     return path;
@@ -191,16 +261,17 @@ float sweep_scale(int directions) {
     return static_cast<float>(1 << bits);
 }
 
-void sweep(const SliceLayout& layout, std::span<const Vec3d> directions, float scale, SweepScratch& scratch,
-           SweepSums& sums) {
+void sweep(const SliceLayout& layout, const ReceiverSlots* receivers, std::span<const SweepDirection> directions,
+           float scale, SweepScratch& scratch, SweepTotals& totals) {
     std::array<RayPath, kSweepLanes> paths;
     for (std::size_t k = 0; k < directions.size(); ++k) {
         paths[k] = make_path(layout, directions[k]);
         scratch.depth[k].assign(static_cast<std::size_t>(paths[k].stride) * static_cast<std::size_t>(paths[k].rows), 0);
+        if (scratch.slab[k].empty()) scratch.slab[k].resize(SliceLayout::tile_texels);  // receivers read one always
     }
     HWY_DYNAMIC_DISPATCH(walk)
-    (layout, std::span<const RayPath>(paths.data(), directions.size()), directions[0][layout.axis] > 0, scale, scratch,
-     sums);
+    (layout, receivers, std::span<const RayPath>(paths.data(), directions.size()), directions[0].l[layout.axis] > 0,
+     scale, scratch, totals);
 }
 
 }  // namespace hairbake
