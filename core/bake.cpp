@@ -53,8 +53,8 @@ HairFacts facts_of(const StrandGeometry& strands) {
 }
 
 /// The answers of the stage by tracing the true strands.
-Transmittance trace_all(const StrandScene& scene, const TriangleMesh* receiver, const TransmittanceSettings& settings,
-                        Progress& progress) {
+Transmittance trace_all(const StrandScene& scene, const TransmittanceScene& baked,
+                        const TransmittanceSettings& settings, Progress& progress) {
     std::vector<std::uint32_t> vertices(scene.strands().vertex_count());
     std::iota(vertices.begin(), vertices.end(), 0u);
     const auto directions = make_directions(settings.direction_set, settings.directions, settings.seed);
@@ -64,7 +64,9 @@ Transmittance trace_all(const StrandScene& scene, const TriangleMesh* receiver, 
     transmittance.average = std::move(means.average);
     transmittance.sh = std::move(means.sh);
     transmittance.bent_cone = std::move(means.bent_cone);
-    if (receiver) transmittance.receiver = trace_receiver(scene, *receiver, directions, progress);
+    if (baked.receiver)
+        transmittance.receiver =
+            trace_receiver(scene, *baked.receiver, baked.receiver_is_occluder, directions, progress);
     transmittance.directions = settings.directions;
     return transmittance;
 }
@@ -85,16 +87,15 @@ void transmittance_stage(BakeResult& result, Progress& progress) {
     const TransmittanceSettings& settings = result.request.transmittance;
     StrandGeometry strands;
     std::optional<StrandScene> scene;
-    const TriangleMesh* receiver = result.receiver ? &*result.receiver : nullptr;
+    TransmittanceScene baked{strands};
+    baked.receiver = result.receiver ? &*result.receiver : nullptr;
+    baked.receiver_is_occluder = baked.receiver && result.hair_inputs.receiver == result.hair_inputs.occluder;
     run_stage(result, progress, "transmittance", [&] {
         strands = make_strand_geometry(*result.hair, result.request.strand);
         if (settings.method == TransmittanceMethod::trace) {
             scene.emplace(strands, progress);
-            result.transmittance = trace_all(*scene, receiver, settings, progress);
+            result.transmittance = trace_all(*scene, baked, settings, progress);
         } else {
-            TransmittanceScene baked{strands};
-            baked.receiver = receiver;
-            baked.receiver_is_occluder = receiver && result.hair_inputs.receiver == result.hair_inputs.occluder;
             result.transmittance = bake_transmittance_volume(baked, settings, progress);
         }
     });

@@ -6,9 +6,11 @@
 #include <array>
 #include <atomic>
 #include <limits>
+#include <utility>
 
 #include "core/base/hemisphere_means.h"
 #include "core/base/parallel.h"
+#include "core/mesh/grounding.h"
 #include "core/reference/crossings.h"
 #include "core/reference/own_strand.h"
 
@@ -22,12 +24,15 @@ struct RayOrigin {
     static constexpr std::uint32_t no_vertex = ~0u;
     Vec3f position;
     std::uint32_t vertex = no_vertex;
-    Vec3f normal;  ///< of a surface; zero for a vertex
+    Vec3f normal;   ///< of a surface; zero for a vertex
+    Vec3f stand;    ///< from where it looks past the occluder (core/mesh/grounding.h)
+    Vec3f horizon;  ///< normal of the occluder where it lies on it, else zero
 
     bool on_surface() const { return vertex == no_vertex; }
     double cosine(const Vec3d& l) const { return dot(Vec3d(normal), l); }
     /// Whether it looks in direction l.
     bool looks(const Vec3d& l) const { return !on_surface() || cosine(l) > 0; }
+    bool is_over_horizon(const Vec3f& l) const { return horizon == Vec3f() || dot(horizon, l) > 0; }
 };
 
 /// What the filter knows of the packet under way. Embree hands the context back unchanged.
@@ -72,13 +77,14 @@ struct Packet {
     PacketContext context;
 };
 
-void aim(Packet& packet, const StrandScene& scene, std::span<const RayOrigin> origins, const Vec3d& direction) {
-    const Vec3f l(direction);
-    packet.context.direction = l;
+/// Aims the rays for which lane_is_used(i) at packet.context.direction, from position_of(origin).
+template <class PositionOf, class LaneIsUsed>
+void aim(Packet& packet, const StrandScene& scene, std::span<const RayOrigin> origins, const PositionOf& position_of,
+         const LaneIsUsed& lane_is_used) {
+    const Vec3f l = packet.context.direction;
     for (unsigned i = 0; i < kPacket; ++i) {
-        const RayOrigin& origin = origins[i < origins.size() ? i : 0];
-        const Vec3f p = origin.position * scene.scale();
-        packet.valid[i] = i < origins.size() && origin.looks(direction) ? -1 : 0;
+        const Vec3f p = position_of(origins[i < origins.size() ? i : 0]) * scene.scale();
+        packet.valid[i] = i < origins.size() && lane_is_used(i) ? -1 : 0;
         packet.rays.org_x[i] = p.x;
         packet.rays.org_y[i] = p.y;
         packet.rays.org_z[i] = p.z;
@@ -94,49 +100,92 @@ void aim(Packet& packet, const StrandScene& scene, std::span<const RayOrigin> or
     }
 }
 
+/// Bit i: origin i looks in the packet's direction, and no occluder is in the way.
+unsigned past_occluder(const StrandScene& scene, std::span<const RayOrigin> origins, const Vec3d& direction,
+                       bool occluded, Packet& packet) {
+    unsigned seen = 0;
+    for (unsigned i = 0; i < origins.size(); ++i)
+        if (origins[i].looks(direction) && origins[i].is_over_horizon(packet.context.direction)) seen |= 1u << i;
+    if (!occluded) return seen;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    aim(
+        packet, scene, origins, [](const RayOrigin& origin) { return origin.stand; },
+        [&](unsigned i) { return (seen >> i & 1) != 0; });
+    rtcOccluded16(packet.valid.data(), scene.occluder_scene(), &context, &packet.rays);
+    for (unsigned i = 0; i < origins.size(); ++i)
+        if (packet.rays.tfar[i] < 0) seen &= ~(1u << i);
+    return seen;
+}
+
+/// What the rays of one call meet.
+struct Obstacles {
+    const StrandScene& scene;
+    bool opaque;    ///< all strands are
+    bool occluded;  ///< the scene's occluder counts
+};
+
 /// Calls visit(origin number, direction number, T) for up to 16 origins and every direction in which they look.
 template <class Visit>
-void trace_packet(const StrandScene& scene, std::span<const RayOrigin> origins, std::span<const Vec3d> directions,
-                  bool opaque, const Visit& visit) {
-    const StrandGeometry& strands = scene.strands();
+void trace_packet(const Obstacles& obstacles, std::span<const RayOrigin> origins, std::span<const Vec3d> directions,
+                  const Visit& visit) {
+    const StrandScene& scene = obstacles.scene;
     std::array<std::vector<std::uint32_t>, kPacket> hit;
     Packet packet;
     rtcInitIntersectContext(&packet.context.embree);
     packet.context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     packet.context.embree.filter = filter;
     packet.context.scene = &scene;
-    packet.context.hit = opaque ? nullptr : &hit;
+    packet.context.hit = obstacles.opaque ? nullptr : &hit;
     for (unsigned i = 0; i < origins.size(); ++i) {
         packet.context.vertex[i] = origins[i].vertex;
-        if (!origins[i].on_surface()) packet.context.own[i] = adjacent_segments(strands, origins[i].vertex);
+        if (!origins[i].on_surface()) packet.context.own[i] = adjacent_segments(scene.strands(), origins[i].vertex);
     }
     for (std::size_t k = 0; k < directions.size(); ++k) {
-        aim(packet, scene, origins, directions[k]);
+        const Vec3f l = packet.context.direction = Vec3f(directions[k]);
+        const unsigned seen = past_occluder(scene, origins, directions[k], obstacles.occluded, packet);
+        aim(
+            packet, scene, origins, [](const RayOrigin& origin) { return origin.position; },
+            [&](unsigned i) { return (seen >> i & 1) != 0; });
         for (auto& list : hit) list.clear();
         rtcOccluded16(packet.valid.data(), scene.scene(), &packet.context.embree, &packet.rays);
         for (unsigned i = 0; i < origins.size(); ++i) {
-            if (packet.valid[i] == 0) continue;
-            visit(i, k,
-                  opaque ? (packet.rays.tfar[i] >= 0 ? 1.0 : 0.0)
-                         : transmittance_of_crossings(strands, origins[i].position, packet.context.direction, hit[i]));
+            const auto t = [&] {
+                if ((seen >> i & 1) == 0) return 0.0;
+                if (obstacles.opaque) return packet.rays.tfar[i] >= 0 ? 1.0 : 0.0;
+                return double{transmittance_of_crossings(scene.strands(), origins[i].position, l, hit[i])};
+            };
+            if (origins[i].looks(directions[k])) visit(i, k, t());
         }
     }
 }
 
-/// Traces `count` origins, origin_of(i), and calls visit(i, direction number, T).
-template <class OriginOf, class Visit>
-void trace_all(const StrandScene& scene, std::size_t count, const OriginOf& origin_of,
+/// Where points of the model stand that lie on the scene's occluder.
+void stand_on_occluder(const StrandScene& scene, std::span<RayOrigin> origins, Progress& progress) {
+    std::vector<Vec3f> positions;
+    for (const RayOrigin& origin : origins) positions.push_back(origin.position);
+    const ShadowScale scale = shadow_scale(scene.strands().positions, *scene.occluder());
+    for (const GroundedPoint& g : ground_points(positions, *scene.occluder(), scale, progress)) {
+        origins[g.point].stand = g.origin;
+        origins[g.point].horizon = g.normal;
+    }
+}
+
+/// Traces all origins and calls visit(origin number, direction number, T).
+template <class Visit>
+void trace_all(const StrandScene& scene, std::vector<RayOrigin> origins, bool occluded,
                std::span<const Vec3d> directions, Progress& progress, const Visit& visit) {
     const auto& opacities = scene.strands().opacities;
     const bool opaque = std::all_of(opacities.begin(), opacities.end(), [](float o) { return o == 1; });
+    for (RayOrigin& origin : origins) origin.stand = origin.position;
+    if (occluded) stand_on_occluder(scene, origins, progress);
     std::atomic<std::size_t> done{0};
-    parallel_for(count, kPacket, [&](std::size_t begin, std::size_t end) {
+    parallel_for(origins.size(), kPacket, [&](std::size_t begin, std::size_t end) {
         progress.check();
-        std::array<RayOrigin, kPacket> origins;
-        for (std::size_t i = begin; i < end; ++i) origins[i - begin] = origin_of(i);
-        trace_packet(scene, std::span(origins).first(end - begin), directions, opaque,
-                     [&](std::size_t i, std::size_t k, double t) { visit(begin + i, k, t); });
-        progress.report("reference", 0.5 + 0.5 * double(done += end - begin) / double(count));
+        trace_packet({scene, opaque, occluded}, std::span<const RayOrigin>(origins).subspan(begin, end - begin),
+                     directions, [&](std::size_t i, std::size_t k, double t) { visit(begin + i, k, t); });
+        progress.report("reference", 0.5 + 0.5 * double(done += end - begin) / double(origins.size()));
     });
 }
 
@@ -150,24 +199,29 @@ std::vector<float> trace_transmittance(const StrandScene& scene, std::span<const
 DirectionalMeans trace_directional(const StrandScene& scene, std::span<const std::uint32_t> vertices,
                                    std::span<const Vec3d> directions, int sh_bands, bool bent_cone,
                                    Progress& progress) {
+    std::vector<RayOrigin> origins(vertices.size());
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        origins[i].position = scene.strands().positions[vertices[i]];
+        origins[i].vertex = vertices[i];
+    }
     DirectionalSums sums(vertices.size(), directions, sh_bands, bent_cone);
-    trace_all(
-        scene, vertices.size(),
-        [&](std::size_t i) {
-            return RayOrigin{scene.strands().positions[vertices[i]], vertices[i], {}};
-        },
-        directions, progress, [&](std::size_t i, std::size_t k, double t) { sums.add(i, k, t); });
+    trace_all(scene, std::move(origins), scene.occluder() != nullptr, directions, progress,
+              [&](std::size_t i, std::size_t k, double t) { sums.add(i, k, t); });
     return sums.means();
 }
 
-std::vector<float> trace_receiver(const StrandScene& scene, const TriangleMesh& receiver,
+std::vector<float> trace_receiver(const StrandScene& scene, const TriangleMesh& receiver, bool receiver_is_occluder,
                                   std::span<const Vec3d> directions, Progress& progress) {
-    const auto origin_of = [&](std::size_t i) {
-        return RayOrigin{receiver.positions[i], RayOrigin::no_vertex, receiver.normals[i]};
-    };
-    std::vector<HemisphereSums> sums(receiver.positions.size());
-    trace_all(scene, sums.size(), origin_of, directions, progress,
-              [&](std::size_t i, std::size_t k, double t) { sums[i].add(t, origin_of(i).cosine(directions[k])); });
+    std::vector<RayOrigin> origins(receiver.positions.size());
+    for (std::size_t i = 0; i < origins.size(); ++i) {
+        origins[i].position = receiver.positions[i];
+        origins[i].normal = receiver.normals[i];
+    }
+    const bool occluded = scene.occluder() && !receiver_is_occluder;
+    std::vector<HemisphereSums> sums(origins.size());
+    trace_all(scene, std::move(origins), occluded, directions, progress, [&](std::size_t i, std::size_t k, double t) {
+        sums[i].add(t, dot(Vec3d(receiver.normals[i]), directions[k]));
+    });
     std::vector<float> answers;
     for (const HemisphereSums& sum : sums)
         for (const float mean : sum.means()) answers.push_back(mean);

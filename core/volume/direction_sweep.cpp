@@ -41,37 +41,82 @@ std::vector<std::vector<SweepDirection>> group_directions(const SweepRequest& re
     return groups;
 }
 
+/// Points that a sweep reads, and the occluder's shadow on them.
+struct Shadowed {
+    const PointShadow& shadow;
+    OccluderShadow::Points points;
+
+    Shadowed(const PointShadow& s, std::span<const std::uint32_t> point_of_slot)
+        : shadow(s), points(s.points(point_of_slot)) {}
+    void look(std::span<const Vec3d> directions, const Progress& progress, OccluderShadow::Scratch& scratch,
+              std::vector<std::uint8_t>& seen) const {
+        shadow.occluder().look(points, directions, progress, scratch, seen);
+    }
+};
+
+/// [slot] the model's vertex, or SliceLayout::no_vertex.
+std::vector<std::uint32_t> vertices_of_slots(const SliceLayout& layout, const SortedStrands& sorted) {
+    std::vector<std::uint32_t> vertices(layout.slot_vertex);
+    for (std::uint32_t& v : vertices)
+        if (v != SliceLayout::no_vertex) v = sorted.vertices[v];
+    return vertices;
+}
+
 /// One axis: the grid in slices, and who reads there.
 struct Axis {
     SliceLayout layout;
     std::optional<ReceiverSlots> receivers;
+    std::optional<Shadowed> vertex_shadow, receiver_shadow;
+
+    Axis(SliceLayout l, const GridFrame& frame, const SortedStrands& sorted, const SweepRequest& request)
+        : layout(std::move(l)) {
+        if (request.vertex_shadow) vertex_shadow.emplace(*request.vertex_shadow, vertices_of_slots(layout, sorted));
+        if (!request.receiver) return;
+        receivers = make_receiver_slots(frame, sorted, layout, *request.receiver);
+        if (request.receiver_shadow) receiver_shadow.emplace(*request.receiver_shadow, receivers->point);
+    }
+    SweepTotals empty_totals(std::size_t moments) const {
+        SweepTotals totals;
+        totals.vertices = SweepSums(layout.slot_vertex.size(), moments);
+        if (receivers) totals.receivers = SweepSums(receivers->slots(), SweepTotals::receiver_components);
+        return totals;
+    }
 };
 
-SweepTotals empty_totals(const Axis& axis, const SweepRequest& request) {
-    SweepTotals totals;
-    if (request.vertices) totals.vertices = SweepSums(axis.layout.slot_vertex.size(), request.moments.count());
-    if (axis.receivers) totals.receivers = SweepSums(axis.receivers->slots(), SweepTotals::receiver_components);
-    return totals;
+/// What one thread needs; reused from walk to walk.
+struct WalkScratch {
+    SweepScratch sweep;
+    OccluderShadow::Scratch raster;
+    std::vector<std::uint8_t> vertices_see, receivers_see;
+};
+
+void sweep_group(const Axis& axis, std::span<const SweepDirection> group, float scale, const Progress& progress,
+                 WalkScratch& scratch, SweepTotals& totals) {
+    std::vector<Vec3d> directions;
+    for (const SweepDirection& direction : group) directions.push_back(direction.l);
+    if (axis.vertex_shadow) axis.vertex_shadow->look(directions, progress, scratch.raster, scratch.vertices_see);
+    if (axis.receiver_shadow) axis.receiver_shadow->look(directions, progress, scratch.raster, scratch.receivers_see);
+    sweep(axis.layout, axis.receivers ? &*axis.receivers : nullptr, group, scale,
+          {scratch.vertices_see, scratch.receivers_see}, scratch.sweep, totals);
 }
 
 /// Sweeps all groups of one axis and adds what they bring. `swept` is told how many directions are done.
-void sweep_axis(const Axis& axis, const SweepRequest& request, std::span<const std::vector<SweepDirection>> groups,
-                Progress& progress, const std::function<void(std::size_t)>& swept, DirectionSums& sums) {
-    const std::size_t walks = std::min(groups.size(), most_walks(request.moments.count()));
+void sweep_axis(const Axis& axis, std::size_t moments, std::span<const std::vector<SweepDirection>> groups,
+                const Progress& progress, const std::function<void(std::size_t)>& swept, DirectionSums& sums) {
+    const std::size_t walks = std::min(groups.size(), most_walks(moments));
     std::vector<SweepTotals> totals(walks);
     std::atomic<std::size_t> next{0};
     parallel_for(walks, 1, [&](std::size_t w, std::size_t) {
-        SweepScratch scratch;
+        WalkScratch scratch;
         bool first = true;
         for (std::size_t g = next++; g < groups.size(); g = next++) {
             progress.check();
-            if (std::exchange(first, false)) totals[w] = empty_totals(axis, request);
-            sweep(axis.layout, axis.receivers ? &*axis.receivers : nullptr, groups[g], sums.vertices.scale(), scratch,
-                  totals[w]);
+            if (std::exchange(first, false)) totals[w] = axis.empty_totals(moments);
+            sweep_group(axis, groups[g], sums.vertices.scale(), progress, scratch, totals[w]);
             swept(groups[g].size());
         }
     });
-    if (request.vertices) sums.vertices.add(axis.layout.slot_vertex, totals, &SweepTotals::vertices);
+    sums.vertices.add(axis.layout.slot_vertex, totals, &SweepTotals::vertices);
     if (axis.receivers) sums.receivers.add(axis.receivers->point, totals, &SweepTotals::receivers);
 }
 
@@ -95,21 +140,19 @@ DirectionSums sweep_directions(const GridFrame& frame, const SortedStrands& sort
                                const SweepRequest& request, Progress& progress, double from, double to) {
     const std::size_t count = request.directions.size();
     const float scale = sweep_scale(static_cast<int>(count));
-    const std::size_t vertices = request.vertices ? sorted.vertices.size() : 0;
     const std::size_t points = request.receiver ? request.receiver->positions.size() : 0;
-    DirectionSums sums{ItemSums(vertices, request.moments.count(), scale),
+    DirectionSums sums{ItemSums(sorted.vertices.size(), request.moments.count(), scale),
                        ItemSums(points, SweepTotals::receiver_components, scale)};
     std::atomic<std::size_t> done{0};
     for (int a = 0; a < 3; ++a) {
         const auto groups = group_directions(request, a);
         if (groups.empty()) continue;
-        Axis axis{make_slice_layout(frame, sorted, bricks, a, progress), {}};
-        if (points > 0) axis.receivers = make_receiver_slots(frame, sorted, axis.layout, *request.receiver);
+        const Axis axis(make_slice_layout(frame, sorted, bricks, a, progress), frame, sorted, request);
         const auto swept = [&](std::size_t n) {
             progress.report("transmittance",
                             from + (to - from) * static_cast<double>(done += n) / static_cast<double>(count));
         };
-        sweep_axis(axis, request, groups, progress, swept, sums);
+        sweep_axis(axis, request.moments.count(), groups, progress, swept, sums);
     }
     return sums;
 }

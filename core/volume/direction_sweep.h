@@ -10,6 +10,7 @@
 #include "core/mesh/triangle_mesh.h"
 #include "core/volume/extinction_bricks.h"
 #include "core/volume/grid_frame.h"
+#include "core/volume/point_shadow.h"
 #include "core/volume/strand_pieces.h"
 #include "core/volume/sweep.h"
 
@@ -48,8 +49,9 @@ struct DirectionSums {
 struct SweepRequest {
     std::span<const Vec3d> directions;
     const DirectionMoments& moments;         ///< of the directions; at least four
-    bool vertices = true;                    ///< whether the hair's vertices are read
     const TriangleMesh* receiver = nullptr;  ///< whose positions are read
+    /// Shadows of an occluder on the model's vertices and on the receiver's positions; null for none.
+    const PointShadow *vertex_shadow = nullptr, *receiver_shadow = nullptr;
 };
 
 /// Sweeps `bricks` in every direction. Progress goes from `from` to `to`. Throws Error(out_of_resources),

@@ -31,6 +31,16 @@ struct RayPath {
     }
 };
 
+/// What one walk through the slices reads.
+struct Walk {
+    const SliceLayout& layout;
+    const ReceiverSlots* receivers;
+    std::span<const RayPath> paths;
+    bool ascending;
+    float scale;
+    SweepMask mask;
+};
+
 }  // namespace hairbake
 #endif
 
@@ -109,25 +119,36 @@ HWY_INLINE void add_fixed(V value, V scale, std::int32_t* sum) {
     hn::StoreU(hn::Add(hn::LoadU(di, sum), hn::NearestInt(hn::Mul(value, scale))), di, sum);
 }
 
-/// Reads every slot of slice s before the slice is added to the rays.
-void read_slots(const SliceLayout& layout, int s, bool ascending, std::span<const RayPath> paths, float scale,
-                const SweepScratch& scratch, SweepSums& sums) {
+/// t where the slots from i on see the light of direction k, else 0.
+template <class V>
+HWY_INLINE V mask_blocked(V t, std::span<const std::uint8_t> mask, std::size_t i, std::size_t k) {
+    if (mask.empty()) return t;
     const F d;
     const I di;
-    const auto scale_v = hn::Set(d, scale);
+    const auto bits = hn::PromoteTo(di, hn::LoadU(hn::Rebind<std::uint8_t, I>(), &mask[i]));
+    return hn::IfThenElseZero(hn::RebindMask(d, hn::TestBit(bits, hn::Set(di, 1 << k))), t);
+}
+
+/// Reads every slot of slice s before the slice is added to the rays.
+void read_slots(const Walk& walk, int s, const SweepScratch& scratch, SweepSums& sums) {
+    const SliceLayout& layout = walk.layout;
+    const std::span<const RayPath> paths = walk.paths;
+    const F d;
+    const I di;
+    const auto scale_v = hn::Set(d, walk.scale);
     const std::size_t end = layout.slot_begin[static_cast<std::size_t>(s) + 1];
     for (std::size_t i = layout.slot_begin[static_cast<std::size_t>(s)]; i < end; i += hn::Lanes(d)) {
         const auto u = hn::LoadU(d, &layout.slot_u[i]), v = hn::LoadU(d, &layout.slot_v[i]);
         const auto along = hn::LoadU(d, &layout.slot_s[i]);
         const auto texel = hn::BitCast(di, hn::LoadU(hn::RebindToUnsigned<F>(), &layout.slot_texel[i]));
         // Share of the slice between the vertex and the light's side of it.
-        const auto inside = ascending ? hn::Sub(hn::Set(d, static_cast<float>(s + 1)), along)
-                                      : hn::Sub(along, hn::Set(d, static_cast<float>(s)));
+        const auto inside = walk.ascending ? hn::Sub(hn::Set(d, static_cast<float>(s + 1)), along)
+                                           : hn::Sub(along, hn::Set(d, static_cast<float>(s)));
         alignas(64) float t[kSweepLanes][16];
         for (std::size_t k = 0; k < paths.size(); ++k) {
             const auto depth =
                 depth_at(paths[k], scratch.depth[k].data(), scratch.slab[k].data(), u, v, along, inside, texel);
-            hn::Store(hn::Exp(d, hn::Neg(depth)), d, t[k]);
+            hn::Store(mask_blocked(hn::Exp(d, hn::Neg(depth)), walk.mask.vertices, i, k), d, t[k]);
         }
         for (std::size_t c = 0; c < sums.components; ++c) {
             auto value = hn::Zero(d);
@@ -162,19 +183,20 @@ HWY_INLINE V receiver_depth(const RayPath& path, const float* depth, const float
 }
 
 /// Reads the receiver's slots of slice s, -1 to layout.slices, before the slice is added to the rays.
-void read_receivers(const ReceiverSlots& slots, int s, bool ascending, std::span<const RayPath> paths, float scale,
-                    const SweepScratch& scratch, SweepSums& sums) {
+void read_receivers(const Walk& walk, int s, const SweepScratch& scratch, SweepSums& sums) {
+    const ReceiverSlots& slots = *walk.receivers;
+    const std::span<const RayPath> paths = walk.paths;
     const F d;
     const I di;
-    const auto scale_v = hn::Set(d, scale), zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    const auto scale_v = hn::Set(d, walk.scale), zero = hn::Zero(d), one = hn::Set(d, 1.0f);
     const std::size_t end = slots.begin[static_cast<std::size_t>(s + 2)];
     for (std::size_t i = slots.begin[static_cast<std::size_t>(s + 1)]; i < end; i += hn::Lanes(d)) {
         const auto u = hn::LoadU(d, &slots.u[i]), v = hn::LoadU(d, &slots.v[i]), along = hn::LoadU(d, &slots.s[i]);
         const auto nx = hn::LoadU(d, &slots.normal_x[i]), ny = hn::LoadU(d, &slots.normal_y[i]),
                    nz = hn::LoadU(d, &slots.normal_z[i]);
         const auto texel = hn::LoadU(di, &slots.texel[i]);
-        const auto inside = ascending ? hn::Sub(hn::Set(d, static_cast<float>(s + 1)), along)
-                                      : hn::Sub(along, hn::Set(d, static_cast<float>(s)));
+        const auto inside = walk.ascending ? hn::Sub(hn::Set(d, static_cast<float>(s + 1)), along)
+                                           : hn::Sub(along, hn::Set(d, static_cast<float>(s)));
         auto plain = zero, weighted = zero, weight = zero, cosine = zero;
         for (std::size_t k = 0; k < paths.size(); ++k) {
             const Vec3f& l = paths[k].direction;
@@ -183,7 +205,7 @@ void read_receivers(const ReceiverSlots& slots, int s, bool ascending, std::span
             const auto above = hn::IfThenElseZero(hn::Gt(n_dot_l, zero), one);
             const auto depth =
                 receiver_depth(paths[k], scratch.depth[k].data(), scratch.slab[k].data(), u, v, along, inside, texel);
-            const auto t = hn::Exp(d, hn::Neg(depth));
+            const auto t = mask_blocked(hn::Exp(d, hn::Neg(depth)), walk.mask.receivers, i, k);
             plain = hn::MulAdd(above, t, plain);
             weighted = hn::MulAdd(n_dot_l, t, weighted);
             weight = hn::Add(weight, above);
@@ -197,27 +219,24 @@ void read_receivers(const ReceiverSlots& slots, int s, bool ascending, std::span
     }
 }
 
-void walk_slice(const SliceLayout& layout, const ReceiverSlots* receivers, int s, std::span<const RayPath> paths,
-                bool ascending, float scale, SweepScratch& scratch, SweepTotals& totals) {
+void walk_slice(const Walk& walk, int s, SweepScratch& scratch, SweepTotals& totals) {
+    const SliceLayout& layout = walk.layout;
     const bool in_grid = s >= 0 && s < layout.slices;
     const std::uint32_t begin = in_grid ? layout.tile_begin[static_cast<std::size_t>(s)] : 0;
     const std::uint32_t end = in_grid ? layout.tile_begin[static_cast<std::size_t>(s) + 1] : 0;
     const auto at = [&](std::uint32_t tile) { return std::size_t{SliceLayout::tile_texels} * (tile - begin); };
-    for (std::size_t k = 0; k < paths.size(); ++k)
+    for (std::size_t k = 0; k < walk.paths.size(); ++k)
         if (scratch.slab[k].size() < at(end)) scratch.slab[k].resize(at(end));
-    for (std::uint32_t tile = begin; tile < end; ++tile) fill_slab(layout, tile, at(tile), paths, scratch);
-    if (begin < end && totals.vertices.slots > 0)
-        read_slots(layout, s, ascending, paths, scale, scratch, totals.vertices);
-    if (totals.receivers.slots > 0) read_receivers(*receivers, s, ascending, paths, scale, scratch, totals.receivers);
-    for (std::uint32_t tile = begin; tile < end; ++tile) add_slab(layout, tile, at(tile), s, paths, scratch);
+    for (std::uint32_t tile = begin; tile < end; ++tile) fill_slab(layout, tile, at(tile), walk.paths, scratch);
+    if (begin < end && totals.vertices.slots > 0) read_slots(walk, s, scratch, totals.vertices);
+    if (totals.receivers.slots > 0) read_receivers(walk, s, scratch, totals.receivers);
+    for (std::uint32_t tile = begin; tile < end; ++tile) add_slab(layout, tile, at(tile), s, walk.paths, scratch);
 }
 
-void walk(const SliceLayout& layout, const ReceiverSlots* receivers, std::span<const RayPath> paths, bool ascending,
-          float scale, SweepScratch& scratch, SweepTotals& totals) {
-    // Light comes from the upper end when the direction ascends along the axis.
-    for (int step = -1; step <= layout.slices; ++step)
-        walk_slice(layout, receivers, ascending ? layout.slices - 1 - step : step, paths, ascending, scale, scratch,
-                   totals);
+/// Light comes from the upper end when the direction ascends along the axis.
+void walk_slices(const Walk& walk, SweepScratch& scratch, SweepTotals& totals) {
+    for (int step = -1; step <= walk.layout.slices; ++step)
+        walk_slice(walk, walk.ascending ? walk.layout.slices - 1 - step : step, scratch, totals);
 }
 
 }  // namespace hairbake::HWY_NAMESPACE
@@ -227,7 +246,7 @@ HWY_AFTER_NAMESPACE();
 namespace hairbake {
 namespace {
 
-HWY_EXPORT(walk);
+HWY_EXPORT(walk_slices);
 
 /// The rays of a lattice line that meet any of `size` columns in any slice, with a margin of two rays.
 void cover(float slope, int slices, int size, int& base, int& count) {
@@ -262,16 +281,17 @@ float sweep_scale(int directions) {
 }
 
 void sweep(const SliceLayout& layout, const ReceiverSlots* receivers, std::span<const SweepDirection> directions,
-           float scale, SweepScratch& scratch, SweepTotals& totals) {
+           float scale, const SweepMask& mask, SweepScratch& scratch, SweepTotals& totals) {
     std::array<RayPath, kSweepLanes> paths;
     for (std::size_t k = 0; k < directions.size(); ++k) {
         paths[k] = make_path(layout, directions[k]);
         scratch.depth[k].assign(static_cast<std::size_t>(paths[k].stride) * static_cast<std::size_t>(paths[k].rows), 0);
         if (scratch.slab[k].empty()) scratch.slab[k].resize(SliceLayout::tile_texels);  // receivers read one always
     }
-    HWY_DYNAMIC_DISPATCH(walk)
-    (layout, receivers, std::span<const RayPath>(paths.data(), directions.size()), directions[0].l[layout.axis] > 0,
-     scale, scratch, totals);
+    const Walk walk{
+        layout, receivers, std::span<const RayPath>(paths.data(), directions.size()), directions[0].l[layout.axis] > 0,
+        scale,  mask};
+    HWY_DYNAMIC_DISPATCH(walk_slices)(walk, scratch, totals);
 }
 
 }  // namespace hairbake

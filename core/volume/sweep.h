@@ -45,6 +45,12 @@ struct SweepTotals {
 /// Largest power of two s such that sums of `directions` terms of magnitude at most 1 fit 31 bits.
 float sweep_scale(int directions);
 
+/// Who sees past the occluder: bit k of a slot tells whether the slot sees the light of the sweep's direction k. Empty:
+/// nothing is in the way. [slots]
+struct SweepMask {
+    std::span<const std::uint8_t> vertices, receivers;
+};
+
 /// What one thread needs while it sweeps; reused from walk to walk.
 struct SweepScratch {
     std::vector<float> depth[kSweepLanes];  ///< optical depth of every ray so far
@@ -59,6 +65,6 @@ struct SweepScratch {
 /// A receiver's point outside the grid reads the ray that passes it, before the first slice or after the last; the grid
 /// ends where the rays do. `receivers` may be null when totals.receivers is empty.
 void sweep(const SliceLayout& layout, const ReceiverSlots* receivers, std::span<const SweepDirection> directions,
-           float scale, SweepScratch& scratch, SweepTotals& totals);
+           float scale, const SweepMask& mask, SweepScratch& scratch, SweepTotals& totals);
 
 }  // namespace hairbake

@@ -1,14 +1,19 @@
 #include "core/volume/transmittance.h"
 
+#include <numeric>
+#include <optional>
+#include <span>
 #include <string>
 
 #include "core/base/direction_moments.h"
+#include "core/base/hemisphere_means.h"
 #include "core/volume/density_grid.h"
 #include "core/volume/direction_sweep.h"
 #include "core/volume/directional_answers.h"
 #include "core/volume/extinction_bricks.h"
 #include "core/volume/grid_frame.h"
 #include "core/volume/near_field.h"
+#include "core/volume/point_shadow.h"
 #include "core/volume/strand_pieces.h"
 
 namespace hairbake {
@@ -24,6 +29,27 @@ std::vector<float> answer_receiver(const ItemSums& sums, std::vector<std::string
     return answers;
 }
 
+/// Only the occluder, if any, is in the way.
+std::vector<float> receiver_without_hair(const TriangleMesh& receiver, const std::optional<PointShadow>& shadow,
+                                         std::span<const Vec3d> directions, const Progress& progress) {
+    const std::size_t count = receiver.positions.size();
+    if (!shadow) return std::vector<float>(2 * count, 1);
+    std::vector<std::uint32_t> all(count);
+    std::iota(all.begin(), all.end(), 0u);
+    const OccluderShadow::Points points = shadow->points(all);
+    OccluderShadow::Scratch raster;
+    std::vector<std::uint8_t> seen;
+    std::vector<HemisphereSums> sums(count);
+    for (std::size_t k = 0; k < directions.size(); ++k) {
+        shadow->occluder().look(points, directions.subspan(k, 1), progress, raster, seen);
+        for (std::size_t i = 0; i < count; ++i) sums[i].add(seen[i], dot(Vec3d(receiver.normals[i]), directions[k]));
+    }
+    std::vector<float> answers;
+    for (const HemisphereSums& sum : sums)
+        for (const float mean : sum.means()) answers.push_back(mean);
+    return answers;
+}
+
 }  // namespace
 
 Transmittance bake_transmittance_volume(const TransmittanceScene& scene, const TransmittanceSettings& settings,
@@ -32,8 +58,14 @@ Transmittance bake_transmittance_volume(const TransmittanceScene& scene, const T
     const auto directions = make_directions(settings.direction_set, settings.directions, settings.seed);
     Transmittance result;
     result.directions = settings.directions;
+    const bool receiver_is_shadowed = scene.receiver && scene.occluder && !scene.receiver_is_occluder;
+    std::optional<PointShadow> vertex_shadow, receiver_shadow;
+    if (receiver_is_shadowed)
+        receiver_shadow.emplace(scene.receiver->positions, *scene.occluder,
+                                shadow_scale(strands.positions, *scene.occluder), progress);
     if (strands.vertex_count() == 0) {
-        if (scene.receiver) result.receiver.assign(2 * scene.receiver->positions.size(), 1);
+        if (scene.receiver)
+            result.receiver = receiver_without_hair(*scene.receiver, receiver_shadow, directions, progress);
         return result;
     }
     bool bounded_by_width = false;
@@ -54,8 +86,13 @@ Transmittance bake_transmittance_volume(const TransmittanceScene& scene, const T
 
     // The sweep always sums up four moments: the near-field correction needs them.
     const DirectionMoments moments(directions, settings.sh_bands, true);
-    const DirectionSums sums =
-        sweep_directions(frame, sorted, bricks, {directions, moments, true, scene.receiver}, progress, 0.3, 0.7);
+    SweepRequest request{directions, moments, scene.receiver};
+    if (scene.occluder)
+        vertex_shadow.emplace(strands.positions, *scene.occluder, shadow_scale(strands.positions, *scene.occluder),
+                              progress);
+    request.vertex_shadow = vertex_shadow ? &*vertex_shadow : nullptr;
+    request.receiver_shadow = receiver_shadow ? &*receiver_shadow : nullptr;
+    const DirectionSums sums = sweep_directions(frame, sorted, bricks, request, progress, 0.3, 0.7);
     auto average =
         correct_near_field(strands, frame, sorted, bricks, angular_means(sums.vertices, directions.size()), progress);
     DirectionalMeans answers = directional_answers(sums.vertices, sorted.vertices, std::move(average),

@@ -39,7 +39,7 @@ inline std::vector<float> sweep_one(const StrandGeometry& strands, const Stages&
     const SweepDirection direction{l, std::span(&one, 1)};
     SweepTotals totals;
     totals.vertices = SweepSums(layout.slot_vertex.size(), 1);
-    sweep(layout, nullptr, std::span(&direction, 1), sweep_scale(1), scratch, totals);
+    sweep(layout, nullptr, std::span(&direction, 1), sweep_scale(1), {}, scratch, totals);
     std::vector<float> t(strands.vertex_count());
     for (std::size_t i = 0; i < layout.slot_vertex.size(); ++i)
         if (layout.slot_vertex[i] != SliceLayout::no_vertex)

@@ -119,7 +119,7 @@ TEST(Sweep, OfTwoDirectionsTogetherIsTheSumOfBoth) {
     const std::vector<SweepDirection> directions{{both[0], moments.weights(0)}, {both[1], moments.weights(1)}};
     SweepTotals totals;
     totals.vertices = SweepSums(layout.slot_vertex.size(), 4);
-    sweep(layout, nullptr, directions, sweep_scale(2), scratch, totals);
+    sweep(layout, nullptr, directions, sweep_scale(2), {}, scratch, totals);
     const SweepSums& sums = totals.vertices;
     const auto a = sweep_one(block.strands, stages, both[0]), b = sweep_one(block.strands, stages, both[1]);
     for (std::size_t i = 0; i < layout.slot_vertex.size(); ++i) {
