@@ -15,7 +15,7 @@ using Moments = std::array<float, SweepDirection::most_weights>;
 /// The moments of a vertex whose A the near-field correction changed to `average`.
 void correct(Moments& moments, std::size_t count, float average) {
     const float swept = moments[0];
-    const float share = average > swept ? (1 - average) / (1 - swept) : swept > 0 ? average / swept : 0;
+    const float share = swept > 0 ? average / swept : 0;
     moments[0] = average;
     for (std::size_t i = 1; i < count; ++i) moments[i] *= share;
 }

@@ -14,11 +14,12 @@ namespace hairbake {
 std::vector<AngularMean> angular_means(const ItemSums& vertices, std::size_t directions);
 
 /// SH coefficients and bent cones of every vertex, [V] in the model's order (vertices_of is SortedStrands::vertices),
-/// in agreement with the corrected averages `average` (which go into the answer): the sweep's moments, changed as the
-/// near-field correction changed A. Where A fell from a to A, every moment is multiplied by A / a: the hair that
-/// the grid did not see lies on all sides of the vertex. Where A rose, (1 - A) / (1 - a): what was blocked too much,
-/// the vertex's own strand above all, is given back evenly, so that T stays within [0, 1] and all that is left where A
-/// = 1 is the mean.
+/// in agreement with the corrected averages `average` (which go into the answer): the near-field correction multiplies
+/// T of every direction by the factor that it gave A, so every moment of a vertex is multiplied by it, and bent cones
+/// stay as swept. (What lies within half a voxel lies on all sides in the mean. RMSE of band 1 at 200,000 curly
+/// vertices: 0.0638 so, 0.0665 with the moments left alone, 0.0699 with what is given back spread evenly, so that no T
+/// exceeds 1; bands 2 and 3 hardly differ. Those errors are nearly the same in all bands, as the noise of single
+/// strands is.)
 DirectionalMeans directional_answers(const ItemSums& vertices, std::span<const std::uint32_t> vertices_of,
                                      std::vector<float> average, std::size_t directions, int sh_bands, bool bent_cone);
 
