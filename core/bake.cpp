@@ -71,13 +71,33 @@ Transmittance trace_all(const StrandScene& scene, const TransmittanceScene& bake
     return transmittance;
 }
 
+/// Which of its edges make a mesh something else than a closed surface, for a warning.
+std::string shell_of(const MeshTopology& topology) {
+    return std::to_string(topology.open_edges) + " of its " + std::to_string(topology.edges) +
+           " edges lie in one triangle only, " + std::to_string(topology.irregular_edges) +
+           " in more than two or in two that disagree about the outside";
+}
+
+void read_occluder(BakeResult& result) {
+    result.occluder = read_mesh(*result.request.occluder);
+    result.occluder_topology = topology_of(*result.occluder);
+    const MeshTopology& topology = result.occluder_topology;
+    if (!topology.closed)
+        result.warnings.push_back("the occluder is not closed (" + shell_of(topology) +
+                                  "): it is taken as a shell that stops light from both sides");
+    if (topology.inside_out)
+        result.warnings.push_back("the occluder's triangles run clockwise seen from outside: they are turned round");
+}
+
 void read_hair_stage(BakeResult& result, Progress& progress) {
     run_stage(result, progress, "read_hair", [&] {
         const BakeRequest& request = result.request;
         result.hair_inputs.hair = digest_of_file(*request.hair);
+        if (request.occluder) result.hair_inputs.occluder = digest_of_file(*request.occluder);
         if (request.receiver) result.hair_inputs.receiver = digest_of_file(*request.receiver);
         result.transmittance_key = transmittance_key(result.hair_inputs, result.request);
         result.hair = read_hair(*request.hair);
+        if (request.occluder) read_occluder(result);
         if (request.receiver) result.receiver = read_mesh(*request.receiver);
     });
 }
@@ -87,13 +107,14 @@ void transmittance_stage(BakeResult& result, Progress& progress) {
     const TransmittanceSettings& settings = result.request.transmittance;
     StrandGeometry strands;
     std::optional<StrandScene> scene;
-    TransmittanceScene baked{strands};
+    const TriangleMesh* occluder = result.occluder ? &*result.occluder : nullptr;
+    TransmittanceScene baked{strands, occluder};
     baked.receiver = result.receiver ? &*result.receiver : nullptr;
     baked.receiver_is_occluder = baked.receiver && result.hair_inputs.receiver == result.hair_inputs.occluder;
     run_stage(result, progress, "transmittance", [&] {
         strands = make_strand_geometry(*result.hair, result.request.strand);
         if (settings.method == TransmittanceMethod::trace) {
-            scene.emplace(strands, progress);
+            scene.emplace(strands, progress, occluder);
             result.transmittance = trace_all(*scene, baked, settings, progress);
         } else {
             result.transmittance = bake_transmittance_volume(baked, settings, progress);
@@ -103,7 +124,7 @@ void transmittance_stage(BakeResult& result, Progress& progress) {
     add_warnings(result, result.transmittance->warnings);
     if (settings.reference_vertices == 0) return;
     run_stage(result, progress, "reference", [&] {
-        if (!scene) scene.emplace(strands, progress);
+        if (!scene) scene.emplace(strands, progress, occluder);
         result.error_bar =
             measure_error(*scene, result.transmittance->average, settings.reference_vertices, settings.seed, progress);
     });

@@ -41,7 +41,7 @@ const std::vector<FieldFlag>& field_flags() {
 }
 
 struct Options {
-    std::optional<std::string> hair, environment, receiver, request_file, preset;
+    std::optional<std::string> hair, environment, occluder, receiver, request_file, preset;
     std::string folder, progress = "auto";
     std::map<std::string, std::string> fields;  ///< flag to value
     std::vector<std::string> settings;          ///< path=value
@@ -66,6 +66,7 @@ BakeRequest make_request(const Options& options) {
     if (options.request_file) merge_json(request, text_of(*options.request_file), *options.request_file);
     if (options.hair) request.hair = options.hair;
     if (options.environment) request.environment = options.environment;
+    if (options.occluder) request.occluder = options.occluder;
     if (options.receiver) request.receiver = options.receiver;
     for (const FieldFlag& flag : field_flags())
         if (const auto value = options.fields.find(flag.flag); value != options.fields.end())
@@ -163,6 +164,7 @@ void add_bake_command(CLI::App& app, Action& action) {
     const auto options = std::make_shared<Options>();
     command->add_option("--hair", options->hair, "hair model; alone: transmittance only");
     command->add_option("--env", options->environment, "HDR environment map; alone: irradiance maps only");
+    command->add_option("--occluder", options->occluder, "mesh (OBJ) that stops light completely: the head");
     command->add_option("--receiver", options->receiver, "mesh (OBJ) that the hair's shadow is baked on as well");
     command->add_option("--out", options->folder, "result folder: new, empty or an earlier result")->required();
     command->add_option("--preset", options->preset, "draft, final or paper (see hairbake presets)");

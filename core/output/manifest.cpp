@@ -56,6 +56,16 @@ Json environment_input(const BakeResult& result) {
             {"energy", map.repairs.energy_total}};
 }
 
+Json occluder_input(const BakeResult& result) {
+    const MeshTopology& topology = result.occluder_topology;
+    return {{"sha256", result.hair_inputs.occluder},
+            {"positions", result.occluder->positions.size()},
+            {"triangles", result.occluder->triangles.size()},
+            {"closed", topology.closed},
+            {"open_edges", topology.open_edges},
+            {"irregular_edges", topology.irregular_edges}};
+}
+
 Json receiver_input(const BakeResult& result) {
     return {{"sha256", result.hair_inputs.receiver},
             {"positions", result.receiver->positions.size()},
@@ -65,6 +75,7 @@ Json receiver_input(const BakeResult& result) {
 Json inputs(const BakeResult& result) {
     Json block = Json::object();
     if (result.transmittance) block["hair"] = hair_input(result);
+    if (result.occluder) block["occluder"] = occluder_input(result);
     if (result.receiver) block["receiver"] = receiver_input(result);
     if (result.environment) block["environment"] = environment_input(result);
     return block;
