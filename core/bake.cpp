@@ -4,6 +4,7 @@
 #include <fstream>
 #include <new>
 #include <numeric>
+#include <utility>
 
 #include "core/base/digest.h"
 #include "core/base/direction_set.h"
@@ -53,13 +54,21 @@ HairFacts facts_of(const StrandGeometry& strands) {
             strands.degenerate_segment_count, strands.bounds_min,     strands.bounds_max};
 }
 
-/// A of every vertex by tracing the true strands.
-Transmittance trace_all(const StrandScene& scene, const TransmittanceSettings& settings, Progress& progress) {
+/// The answers of the stage by tracing the true strands.
+Transmittance trace_all(const StrandScene& scene, const TransmittanceScene& baked,
+                        const TransmittanceSettings& settings, Progress& progress) {
     std::vector<std::uint32_t> vertices(scene.strands().vertex_count());
     std::iota(vertices.begin(), vertices.end(), 0u);
     const auto directions = make_directions(settings.direction_set, settings.directions, settings.seed);
     Transmittance transmittance;
-    transmittance.average = trace_transmittance(scene, vertices, directions, progress);
+    DirectionalMeans means =
+        trace_directional(scene, vertices, directions, settings.sh_bands, settings.bent_cone, progress);
+    transmittance.average = std::move(means.average);
+    transmittance.sh = std::move(means.sh);
+    transmittance.bent_cone = std::move(means.bent_cone);
+    if (baked.receiver)
+        transmittance.receiver =
+            trace_receiver(scene, *baked.receiver, baked.receiver_is_occluder, directions, progress);
     transmittance.directions = settings.directions;
     return transmittance;
 }
@@ -87,10 +96,12 @@ void read_hair_stage(BakeResult& result, Progress& progress) {
         const BakeRequest& request = result.request;
         result.hair_inputs.hair = digest_of_file(*request.hair);
         if (request.occluder) result.hair_inputs.occluder = digest_of_file(*request.occluder);
+        if (request.receiver) result.hair_inputs.receiver = digest_of_file(*request.receiver);
         result.transmittance_key = transmittance_key(result.hair_inputs, result.request);
         result.hair = read_hair(*request.hair);
         if (request.occluder) read_occluder(result);
         check_outputs(result);
+        if (request.receiver) result.receiver = read_mesh(*request.receiver);
     });
 }
 
@@ -100,15 +111,18 @@ void transmittance_stage(BakeResult& result, Progress& progress) {
     StrandGeometry strands;
     std::optional<StrandScene> scene;
     const TriangleMesh* occluder = result.occluder ? &*result.occluder : nullptr;
+    TransmittanceScene baked{strands, occluder};
+    baked.receiver = result.receiver ? &*result.receiver : nullptr;
+    baked.receiver_is_occluder = baked.receiver && result.hair_inputs.receiver == result.hair_inputs.occluder;
     run_stage(result, progress, "transmittance", [&] {
         strands = make_strand_geometry(*result.hair, result.request.strand);
         if (settings.method == TransmittanceMethod::trace) {
             scene.emplace(strands, progress, occluder);
-            result.transmittance = trace_all(*scene, settings, progress);
+            result.transmittance = trace_all(*scene, baked, settings, progress);
         } else if (settings.method == TransmittanceMethod::opacity_maps) {
-            result.transmittance = bake_transmittance_opacity_maps({strands}, settings, progress);
+            result.transmittance = bake_transmittance_opacity_maps(baked, settings, progress);
         } else {
-            result.transmittance = bake_transmittance_volume({strands, occluder}, settings, progress);
+            result.transmittance = bake_transmittance_volume(baked, settings, progress);
         }
     });
     result.hair_facts = facts_of(strands);

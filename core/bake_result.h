@@ -47,6 +47,7 @@ struct BakeResult {
     std::optional<HairModel> hair;  ///< kept only where the outputs need it
     std::optional<TriangleMesh> occluder;
     MeshTopology occluder_topology;  ///< with an occluder
+    std::optional<TriangleMesh> receiver;
     std::optional<Transmittance> transmittance;
     std::optional<ErrorBar> error_bar;  ///< with reference_vertices > 0
 

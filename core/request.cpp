@@ -104,6 +104,11 @@ void check_irradiance(const IrradianceSettings& settings) {
         check_light("irradiance.lights[" + std::to_string(i) + "]", settings.lights[i]);
 }
 
+void check_occluder(const BakeRequest& request) {
+    if (request.occluder && request.transmittance.method == TransmittanceMethod::opacity_maps)
+        refuse("occluder", "given to the method opacity_maps", "an occluder with the methods volume and trace");
+}
+
 void check_outputs(const BakeRequest& request) {
     const std::vector<std::string>& outputs = request.outputs;
     for (auto output = outputs.begin(); output != outputs.end(); ++output) {
@@ -132,6 +137,7 @@ void validate(const BakeRequest& request) {
     check_transmittance(request.transmittance);
     check_environment(request.environment_settings);
     check_irradiance(request.irradiance);
+    check_occluder(request);
     check_outputs(request);
 }
 

@@ -42,7 +42,7 @@ const std::vector<FieldFlag>& field_flags() {
 }
 
 struct Options {
-    std::optional<std::string> hair, environment, occluder, request_file, preset;
+    std::optional<std::string> hair, environment, occluder, receiver, request_file, preset;
     std::string folder, progress = "auto";
     std::map<std::string, std::string> fields;  ///< flag to value
     std::vector<std::string> settings;          ///< path=value
@@ -68,6 +68,7 @@ BakeRequest make_request(const Options& options) {
     if (options.hair) request.hair = options.hair;
     if (options.environment) request.environment = options.environment;
     if (options.occluder) request.occluder = options.occluder;
+    if (options.receiver) request.receiver = options.receiver;
     for (const FieldFlag& flag : field_flags())
         if (const auto value = options.fields.find(flag.flag); value != options.fields.end())
             for (const char* path : flag.paths) set_field(request, path, value->second);
@@ -167,6 +168,7 @@ void add_bake_command(CLI::App& app, Action& action) {
         "--env", options->environment,
         "HDR environment: a picture, or a cube's six as a folder or sky_{face}.hdr; alone: irradiance maps only");
     command->add_option("--occluder", options->occluder, "mesh (OBJ) that stops light completely: the head");
+    command->add_option("--receiver", options->receiver, "mesh (OBJ) that the hair's shadow is baked on as well");
     command->add_option("--out", options->folder, "result folder: new, empty or an earlier result")->required();
     command->add_option("--preset", options->preset, "draft, final or paper (see hairbake presets)");
     command->add_option("--request", options->request_file, "JSON file with fields of the request");

@@ -69,26 +69,52 @@ Json occluder_input(const BakeResult& result) {
             {"irregular_edges", topology.irregular_edges}};
 }
 
+Json receiver_input(const BakeResult& result) {
+    return {{"sha256", result.hair_inputs.receiver},
+            {"positions", result.receiver->positions.size()},
+            {"triangles", result.receiver->triangles.size()}};
+}
+
 Json inputs(const BakeResult& result) {
     Json block = Json::object();
     if (result.transmittance) block["hair"] = hair_input(result);
     if (result.occluder) block["occluder"] = occluder_input(result);
+    if (result.receiver) block["receiver"] = receiver_input(result);
     if (result.environment) block["environment"] = environment_input(result);
     return block;
 }
 
-Json transmittance_facts(const Transmittance& transmittance) {
+/// Means over the receiver's points; null when it has none.
+Json receiver_facts(const std::vector<float>& receiver) {
+    double plain = 0, cosine = 0;
+    for (std::size_t i = 0; i + 1 < receiver.size(); i += 2) {
+        plain += receiver[i];
+        cosine += receiver[i + 1];
+    }
+    const auto points = static_cast<double>(receiver.size() / 2);
+    return {{"positions", receiver.size() / 2},
+            {"mean", points > 0 ? Json(plain / points) : Json()},
+            {"cosine_mean", points > 0 ? Json(cosine / points) : Json()}};
+}
+
+Json transmittance_facts(const BakeResult& result) {
+    const Transmittance& transmittance = *result.transmittance;
+    const TransmittanceSettings& settings = result.request.transmittance;
     double sum = 0;
     for (const float a : transmittance.average) sum += a;
     const auto& average = transmittance.average;
     const bool any = !average.empty();
-    return {{"vertices", average.size()},
-            {"directions", transmittance.directions},
-            {"voxel_size", transmittance.voxel_size},
-            {"occupied_voxels", transmittance.occupied_voxels},
-            {"mean", any ? Json(sum / static_cast<double>(average.size())) : Json()},
-            {"minimum", any ? Json(*std::min_element(average.begin(), average.end())) : Json()},
-            {"maximum", any ? Json(*std::max_element(average.begin(), average.end())) : Json()}};
+    Json block{{"vertices", average.size()},
+               {"directions", transmittance.directions},
+               {"voxel_size", transmittance.voxel_size},
+               {"occupied_voxels", transmittance.occupied_voxels},
+               {"mean", any ? Json(sum / static_cast<double>(average.size())) : Json()},
+               {"minimum", any ? Json(*std::min_element(average.begin(), average.end())) : Json()},
+               {"maximum", any ? Json(*std::max_element(average.begin(), average.end())) : Json()}};
+    block["sh_bands"] = settings.sh_bands;
+    block["bent_cone"] = settings.bent_cone;
+    if (result.receiver) block["receiver"] = receiver_facts(transmittance.receiver);
+    return block;
 }
 
 Json error_bar(const ErrorBar& bar) {
@@ -187,7 +213,7 @@ std::string make_manifest(const BakeResult& result, const std::vector<WrittenFil
     manifest["stages"] = stages(result);
     manifest["request"] = Json::parse(to_json(result.request));
     manifest["inputs"] = inputs(result);
-    if (result.transmittance) manifest["transmittance"] = transmittance_facts(*result.transmittance);
+    if (result.transmittance) manifest["transmittance"] = transmittance_facts(result);
     manifest["error_bar"] = result.error_bar ? error_bar(*result.error_bar) : Json();
     if (result.irradiance) manifest["irradiance"] = irradiance_facts(*result.irradiance, result.request.irradiance);
     manifest["conventions"] = conventions();

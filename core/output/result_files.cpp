@@ -38,7 +38,12 @@ std::vector<WrittenFile> write_transmittance(BakeResult& result, const std::file
     const BakeRequest& request = result.request;
     const Transmittance& transmittance = *result.transmittance;
     std::vector<WrittenFile> files;
-    if (request.wants("npy")) files.push_back(write_transmittance_npy(transmittance.average, folder));
+    if (request.wants("npy")) {
+        const TransmittanceSettings& settings = request.transmittance;
+        files.push_back(write_transmittance_npy(transmittance.average, folder));
+        append(files, write_directional_npy(transmittance, settings.sh_bands, settings.bent_cone,
+                                            request.receiver.has_value(), folder));
+    }
     if (request.wants("hair")) files.push_back(write_transmittance_hair(*result.hair, transmittance.average, folder));
     progress.check();
     if (request.wants("glb")) files.push_back(write_glb(*result.hair, transmittance, folder));

@@ -47,7 +47,7 @@ bool move(const fs::path& from, const fs::path& to, unsigned flags) {
 std::string staging_prefix(const fs::path& path) {
     char host[256] = "";
     ::gethostname(host, sizeof host - 1);
-    return "." + path.filename().string() + ".hairbake-" + host + "-";
+    return std::string(".").append(path.filename().string()).append(".hairbake-").append(host).append("-");
 }
 
 /// Removes staging folders that processes of this machine left when they were killed. Those of other machines that

@@ -6,7 +6,9 @@
 #include <array>
 #include <atomic>
 #include <limits>
+#include <utility>
 
+#include "core/base/hemisphere_means.h"
 #include "core/base/parallel.h"
 #include "core/mesh/grounding.h"
 #include "core/reference/crossings.h"
@@ -17,15 +19,40 @@ namespace {
 
 constexpr unsigned kPacket = 16;
 
+/// Where rays start: at a vertex of the hair, or at a point of a surface.
+struct RayOrigin {
+    static constexpr std::uint32_t no_vertex = ~0u;
+    Vec3f position;
+    std::uint32_t vertex = no_vertex;
+    Vec3f normal;   ///< of a surface; zero for a vertex
+    Vec3f stand;    ///< from where it looks past the occluder (core/mesh/grounding.h)
+    Vec3f horizon;  ///< normal of the occluder where it lies on it, else zero
+
+    bool on_surface() const { return vertex == no_vertex; }
+    double cosine(const Vec3d& l) const { return dot(Vec3d(normal), l); }
+    /// Whether it looks in direction l.
+    bool looks(const Vec3d& l) const { return !on_surface() || cosine(l) > 0; }
+    bool is_over_horizon(const Vec3f& l) const { return horizon == Vec3f() || dot(horizon, l) > 0; }
+};
+
 /// What the filter knows of the packet under way. Embree hands the context back unchanged.
 struct PacketContext {
     RTCIntersectContext embree;
     const StrandScene* scene;
     Vec3f direction;
-    std::array<std::uint32_t, kPacket> vertex;
+    std::array<std::uint32_t, kPacket> vertex;  ///< or RayOrigin::no_vertex
     std::array<AdjacentSegments, kPacket> own;
     std::array<std::vector<std::uint32_t>, kPacket>* hit;  ///< segments met; null: the first hit ends the ray
 };
+
+/// Whether a vertex's ray meets `segment` as a part of the vertex's own strand.
+bool is_own(const PacketContext& context, unsigned lane, std::uint32_t segment) {
+    const std::uint32_t vertex = context.vertex[lane];
+    if (vertex == RayOrigin::no_vertex) return false;
+    const AdjacentSegments& own = context.own[lane];
+    return own.contains(segment) ||
+           enters_from_inside(context.scene->strands(), vertex, own, segment, context.direction);
+}
 
 /// Drops hits on a vertex's own adjacent segments and on what its ray enters from inside its own strand; when hits are
 /// collected, notes every other one and goes on.
@@ -35,9 +62,7 @@ void filter(const RTCFilterFunctionNArguments* arguments) {
         if (arguments->valid[i] != -1) continue;
         const unsigned lane = RTCRayN_id(arguments->ray, arguments->N, i);
         const std::uint32_t segment = context.scene->segment_of(RTCHitN_primID(arguments->hit, arguments->N, i));
-        const AdjacentSegments& own = context.own[lane];
-        if (own.contains(segment) ||
-            enters_from_inside(context.scene->strands(), context.vertex[lane], own, segment, context.direction)) {
+        if (is_own(context, lane, segment)) {
             arguments->valid[i] = 0;
         } else if (context.hit) {
             (*context.hit)[lane].push_back(segment);
@@ -52,11 +77,14 @@ struct Packet {
     PacketContext context;
 };
 
-/// Rays of one direction from up to 16 `origins`. Bit i of `seen`: ray i is traced.
-void aim(Packet& packet, const StrandScene& scene, std::span<const Vec3f> origins, const Vec3f& l, unsigned seen) {
+/// Aims the rays for which lane_is_used(i) at packet.context.direction, from position_of(origin).
+template <class PositionOf, class LaneIsUsed>
+void aim(Packet& packet, const StrandScene& scene, std::span<const RayOrigin> origins, const PositionOf& position_of,
+         const LaneIsUsed& lane_is_used) {
+    const Vec3f l = packet.context.direction;
     for (unsigned i = 0; i < kPacket; ++i) {
-        const Vec3f p = origins[i < origins.size() ? i : 0] * scene.scale();
-        packet.valid[i] = (seen >> i & 1) != 0 ? -1 : 0;
+        const Vec3f p = position_of(origins[i < origins.size() ? i : 0]) * scene.scale();
+        packet.valid[i] = i < origins.size() && lane_is_used(i) ? -1 : 0;
         packet.rays.org_x[i] = p.x;
         packet.rays.org_y[i] = p.y;
         packet.rays.org_z[i] = p.z;
@@ -72,106 +100,132 @@ void aim(Packet& packet, const StrandScene& scene, std::span<const Vec3f> origin
     }
 }
 
-/// Where the vertices of a packet look past the occluder from (core/mesh/grounding.h).
-struct Stand {
-    std::vector<Vec3f> origins;
-    std::vector<Vec3f> horizons;  ///< normals; zero for a vertex that does not lie on the occluder
-};
-
-Stand stand_of(const StrandScene& scene, std::span<const std::uint32_t> vertices,
-               std::span<const GroundedPoint> grounded, std::size_t first) {
-    Stand stand;
-    for (const std::uint32_t v : vertices) stand.origins.push_back(scene.strands().positions[v]);
-    stand.horizons.resize(vertices.size());
-    for (const GroundedPoint& g : grounded) {
-        stand.origins[g.point - first] = g.origin;
-        stand.horizons[g.point - first] = g.normal;
-    }
-    return stand;
-}
-
-/// Bit i: vertex i sees past the occluder in direction l.
-unsigned past_occluder(const StrandScene& scene, const Stand& stand, const Vec3f& l, Packet& packet) {
-    unsigned seen = (1u << stand.origins.size()) - 1;
-    if (!scene.occluder()) return seen;
-    for (unsigned i = 0; i < stand.origins.size(); ++i)
-        if (stand.horizons[i] != Vec3f() && dot(stand.horizons[i], l) <= 0) seen &= ~(1u << i);
+/// Bit i: origin i looks in the packet's direction, and no occluder is in the way.
+unsigned past_occluder(const StrandScene& scene, std::span<const RayOrigin> origins, const Vec3d& direction,
+                       bool occluded, Packet& packet) {
+    unsigned seen = 0;
+    for (unsigned i = 0; i < origins.size(); ++i)
+        if (origins[i].looks(direction) && origins[i].is_over_horizon(packet.context.direction)) seen |= 1u << i;
+    if (!occluded) return seen;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    aim(packet, scene, stand.origins, l, seen);
+    aim(
+        packet, scene, origins, [](const RayOrigin& origin) { return origin.stand; },
+        [&](unsigned i) { return (seen >> i & 1) != 0; });
     rtcOccluded16(packet.valid.data(), scene.occluder_scene(), &context, &packet.rays);
-    for (unsigned i = 0; i < stand.origins.size(); ++i)
+    for (unsigned i = 0; i < origins.size(); ++i)
         if (packet.rays.tfar[i] < 0) seen &= ~(1u << i);
     return seen;
 }
 
-/// Traces up to 16 vertices in every direction; `out` gets their averages.
-void trace_packet(const StrandScene& scene, std::span<const std::uint32_t> vertices, const Stand& stand,
-                  std::span<const Vec3d> directions, bool opaque, std::span<float> out) {
-    const StrandGeometry& strands = scene.strands();
+/// What the rays of one call meet.
+struct Obstacles {
+    const StrandScene& scene;
+    bool opaque;    ///< all strands are
+    bool occluded;  ///< the scene's occluder counts
+};
+
+/// Calls visit(origin number, direction number, T) for up to 16 origins and every direction in which they look.
+template <class Visit>
+void trace_packet(const Obstacles& obstacles, std::span<const RayOrigin> origins, std::span<const Vec3d> directions,
+                  const Visit& visit) {
+    const StrandScene& scene = obstacles.scene;
     std::array<std::vector<std::uint32_t>, kPacket> hit;
     Packet packet;
     rtcInitIntersectContext(&packet.context.embree);
     packet.context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     packet.context.embree.filter = filter;
     packet.context.scene = &scene;
-    packet.context.hit = opaque ? nullptr : &hit;
-    for (unsigned i = 0; i < vertices.size(); ++i) {
-        packet.context.vertex[i] = vertices[i];
-        packet.context.own[i] = adjacent_segments(strands, vertices[i]);
+    packet.context.hit = obstacles.opaque ? nullptr : &hit;
+    for (unsigned i = 0; i < origins.size(); ++i) {
+        packet.context.vertex[i] = origins[i].vertex;
+        if (!origins[i].on_surface()) packet.context.own[i] = adjacent_segments(scene.strands(), origins[i].vertex);
     }
-
-    std::vector<Vec3f> positions;
-    for (const std::uint32_t v : vertices) positions.push_back(strands.positions[v]);
-
-    std::array<double, kPacket> sum{};
-    for (const Vec3d& direction : directions) {
-        const Vec3f l(direction);
-        packet.context.direction = l;
-        const unsigned seen = past_occluder(scene, stand, l, packet);
-        aim(packet, scene, positions, l, seen);
+    for (std::size_t k = 0; k < directions.size(); ++k) {
+        const Vec3f l = packet.context.direction = Vec3f(directions[k]);
+        const unsigned seen = past_occluder(scene, origins, directions[k], obstacles.occluded, packet);
+        aim(
+            packet, scene, origins, [](const RayOrigin& origin) { return origin.position; },
+            [&](unsigned i) { return (seen >> i & 1) != 0; });
         for (auto& list : hit) list.clear();
         rtcOccluded16(packet.valid.data(), scene.scene(), &packet.context.embree, &packet.rays);
-        for (unsigned i = 0; i < vertices.size(); ++i) {
-            if ((seen >> i & 1) == 0) continue;
-            sum[i] += opaque ? (packet.rays.tfar[i] >= 0 ? 1.0 : 0.0)
-                             : transmittance_of_crossings(strands, strands.positions[vertices[i]], l, hit[i]);
+        for (unsigned i = 0; i < origins.size(); ++i) {
+            const auto t = [&] {
+                if ((seen >> i & 1) == 0) return 0.0;
+                if (obstacles.opaque) return packet.rays.tfar[i] >= 0 ? 1.0 : 0.0;
+                return double{transmittance_of_crossings(scene.strands(), origins[i].position, l, hit[i])};
+            };
+            if (origins[i].looks(directions[k])) visit(i, k, t());
         }
     }
-    for (unsigned i = 0; i < vertices.size(); ++i) out[i] = static_cast<float>(sum[i] / double(directions.size()));
 }
 
-std::vector<GroundedPoint> ground_vertices(const StrandScene& scene, std::span<const std::uint32_t> vertices,
-                                           Progress& progress) {
+/// Where points of the model stand that lie on the scene's occluder.
+void stand_on_occluder(const StrandScene& scene, std::span<RayOrigin> origins, Progress& progress) {
     std::vector<Vec3f> positions;
-    for (const std::uint32_t v : vertices) positions.push_back(scene.strands().positions[v]);
+    for (const RayOrigin& origin : origins) positions.push_back(origin.position);
     const ShadowScale scale = shadow_scale(scene.strands().positions, *scene.occluder());
-    return ground_points(positions, *scene.occluder(), scale, progress);
+    for (const GroundedPoint& g : ground_points(positions, *scene.occluder(), scale, progress)) {
+        origins[g.point].stand = g.origin;
+        origins[g.point].horizon = g.normal;
+    }
+}
+
+/// Traces all origins and calls visit(origin number, direction number, T).
+template <class Visit>
+void trace_all(const StrandScene& scene, std::vector<RayOrigin> origins, bool occluded,
+               std::span<const Vec3d> directions, Progress& progress, const Visit& visit) {
+    const auto& opacities = scene.strands().opacities;
+    const bool opaque = std::all_of(opacities.begin(), opacities.end(), [](float o) { return o == 1; });
+    for (RayOrigin& origin : origins) origin.stand = origin.position;
+    if (occluded) stand_on_occluder(scene, origins, progress);
+    std::atomic<std::size_t> done{0};
+    parallel_for(origins.size(), kPacket, [&](std::size_t begin, std::size_t end) {
+        progress.check();
+        trace_packet({scene, opaque, occluded}, std::span<const RayOrigin>(origins).subspan(begin, end - begin),
+                     directions, [&](std::size_t i, std::size_t k, double t) { visit(begin + i, k, t); });
+        progress.report("reference", 0.5 + 0.5 * double(done += end - begin) / double(origins.size()));
+    });
 }
 
 }  // namespace
 
 std::vector<float> trace_transmittance(const StrandScene& scene, std::span<const std::uint32_t> vertices,
                                        std::span<const Vec3d> directions, Progress& progress) {
-    const auto& opacities = scene.strands().opacities;
-    const bool opaque = std::all_of(opacities.begin(), opacities.end(), [](float o) { return o == 1; });
-    std::vector<float> average(vertices.size());
-    std::vector<GroundedPoint> grounded;
-    if (scene.occluder()) grounded = ground_vertices(scene, vertices, progress);
-    std::atomic<std::size_t> done{0};
-    parallel_for(vertices.size(), kPacket, [&](std::size_t begin, std::size_t end) {
-        progress.check();
-        const std::size_t count = end - begin;
-        const auto is_before = [](const GroundedPoint& g, std::size_t k) { return g.point < k; };
-        const auto first = std::lower_bound(grounded.begin(), grounded.end(), begin, is_before);
-        const auto last = std::lower_bound(first, grounded.end(), end, is_before);
-        const Stand stand = stand_of(scene, vertices.subspan(begin, count), {first, last}, begin);
-        trace_packet(scene, vertices.subspan(begin, count), stand, directions, opaque,
-                     std::span(average).subspan(begin, count));
-        progress.report("reference", 0.5 + 0.5 * double(done += count) / double(vertices.size()));
+    return trace_directional(scene, vertices, directions, 0, false, progress).average;
+}
+
+DirectionalMeans trace_directional(const StrandScene& scene, std::span<const std::uint32_t> vertices,
+                                   std::span<const Vec3d> directions, int sh_bands, bool bent_cone,
+                                   Progress& progress) {
+    std::vector<RayOrigin> origins(vertices.size());
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        origins[i].position = scene.strands().positions[vertices[i]];
+        origins[i].vertex = vertices[i];
+    }
+    DirectionalSums sums(vertices.size(), directions, sh_bands, bent_cone);
+    trace_all(scene, std::move(origins), scene.occluder() != nullptr, directions, progress,
+              [&](std::size_t i, std::size_t k, double t) { sums.add(i, k, t); });
+    return sums.means();
+}
+
+std::vector<float> trace_receiver(const StrandScene& scene, const TriangleMesh& receiver, bool receiver_is_occluder,
+                                  std::span<const Vec3d> directions, Progress& progress) {
+    std::vector<RayOrigin> origins(receiver.positions.size());
+    for (std::size_t i = 0; i < origins.size(); ++i) {
+        origins[i].position = receiver.positions[i];
+        origins[i].normal = receiver.normals[i];
+    }
+    const bool occluded = scene.occluder() && !receiver_is_occluder;
+    std::vector<HemisphereSums> sums(origins.size());
+    trace_all(scene, std::move(origins), occluded, directions, progress, [&](std::size_t i, std::size_t k, double t) {
+        sums[i].add(t, dot(Vec3d(receiver.normals[i]), directions[k]));
     });
-    return average;
+    std::vector<float> answers;
+    for (const HemisphereSums& sum : sums)
+        for (const float mean : sum.means()) answers.push_back(mean);
+    return answers;
 }
 
 }  // namespace hairbake

@@ -5,8 +5,10 @@
 #include <span>
 #include <vector>
 
+#include "core/base/direction_moments.h"
 #include "core/base/progress.h"
 #include "core/base/vec.h"
+#include "core/mesh/triangle_mesh.h"
 #include "core/reference/strand_scene.h"
 
 namespace hairbake {
@@ -19,5 +21,16 @@ namespace hairbake {
 /// thread count. Fastest when neighbouring entries are neighbours in space (packets of 16 share a direction).
 std::vector<float> trace_transmittance(const StrandScene& scene, std::span<const std::uint32_t> vertices,
                                        std::span<const Vec3d> directions, Progress& progress);
+
+/// The same with the directional answers of DirectionalMeans: `sh_bands` in [0, 4], and bent cones.
+DirectionalMeans trace_directional(const StrandScene& scene, std::span<const std::uint32_t> vertices,
+                                   std::span<const Vec3d> directions, int sh_bands, bool bent_cone, Progress& progress);
+
+/// [R * 2]: what the positions of `receiver` see of the hemisphere about their normals, plain and cosine-weighted
+/// (HemisphereSums); the directions below a point's plane are not traced. A point has no strand of its own: inside a
+/// strand it sees nothing. The receiver itself shadows nothing, and with `receiver_is_occluder` the scene's occluder
+/// does not either.
+std::vector<float> trace_receiver(const StrandScene& scene, const TriangleMesh& receiver, bool receiver_is_occluder,
+                                  std::span<const Vec3d> directions, Progress& progress);
 
 }  // namespace hairbake

@@ -15,9 +15,8 @@ std::array<int, 3> first_voxel(const GridFrame& frame, const SortedStrands& sort
     return {8 * brick[0], 8 * brick[1], 8 * brick[2]};
 }
 
-/// Where each brick's eight slices go: number of the tile that holds slice k of the brick.
-std::vector<std::array<std::uint32_t, 8>> place_tiles(const GridFrame& frame, const SortedStrands& sorted,
-                                                      SliceLayout& layout) {
+/// Where each brick's eight slices go.
+void place_tiles(const GridFrame& frame, const SortedStrands& sorted, SliceLayout& layout) {
     std::vector<std::uint32_t> bricks_in_layer(static_cast<std::size_t>(layout.slices / 8));
     std::vector<std::array<int, 3>> first(sorted.brick_count());
     for (std::size_t b = 0; b < first.size(); ++b) {
@@ -30,7 +29,8 @@ std::vector<std::array<std::uint32_t, 8>> place_tiles(const GridFrame& frame, co
     layout.tiles.resize(layout.tile_begin.back());
 
     std::vector<std::uint32_t> used(bricks_in_layer.size());
-    std::vector<std::array<std::uint32_t, 8>> tile_of(sorted.brick_count());
+    auto& tile_of = layout.brick_tiles;
+    tile_of.resize(sorted.brick_count());
     for (std::size_t b = 0; b < first.size(); ++b) {
         const auto layer = static_cast<std::size_t>(first[b][static_cast<std::size_t>(layout.axis)] / 8);
         const std::uint32_t place = used[layer]++;
@@ -41,14 +41,13 @@ std::vector<std::array<std::uint32_t, 8>> place_tiles(const GridFrame& frame, co
                 static_cast<std::uint16_t>(first[b][static_cast<std::size_t>(layout.axis_v)])};
         }
     }
-    return tile_of;
 }
 
 /// Strides of the voxel index inside a brick along the model's axes.
 constexpr std::array<std::size_t, 3> kStride{64, 8, 1};
 
-void copy_tensors(const ExtinctionBricks& bricks, const std::vector<std::array<std::uint32_t, 8>>& tile_of,
-                  SliceLayout& layout) {
+void copy_tensors(const ExtinctionBricks& bricks, SliceLayout& layout) {
+    const auto& tile_of = layout.brick_tiles;
     const std::size_t stride_s = kStride[static_cast<std::size_t>(layout.axis)];
     const std::size_t stride_u = kStride[static_cast<std::size_t>(layout.axis_u)];
     const std::size_t stride_v = kStride[static_cast<std::size_t>(layout.axis_v)];
@@ -109,8 +108,7 @@ void resize_slots(SliceLayout& layout) {
             layout.slot_s[slot] = static_cast<float>(s);
 }
 
-void fill_slots(const SortedStrands& sorted, const std::vector<std::array<std::uint32_t, 8>>& tile_of,
-                std::vector<std::array<std::uint32_t, 8>> next, SliceLayout& layout) {
+void fill_slots(const SortedStrands& sorted, std::vector<std::array<std::uint32_t, 8>> next, SliceLayout& layout) {
     parallel_for(next.size(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b)
             for (std::uint32_t i = sorted.vertex_begin[b]; i < sorted.vertex_begin[b + 1]; ++i) {
@@ -122,7 +120,8 @@ void fill_slots(const SortedStrands& sorted, const std::vector<std::array<std::u
                 layout.slot_s[slot] = g[layout.axis];
                 const auto texel = static_cast<std::uint32_t>((static_cast<int>(g[layout.axis_v]) & 7) * 8 +
                                                               (static_cast<int>(g[layout.axis_u]) & 7));
-                layout.slot_texel[slot] = SliceLayout::tile_texels * (tile_of[b][s & 7] - layout.tile_begin[s]) + texel;
+                layout.slot_texel[slot] =
+                    SliceLayout::tile_texels * (layout.brick_tiles[b][s & 7] - layout.tile_begin[s]) + texel;
                 layout.slot_vertex[slot] = i;
             }
     });
@@ -139,12 +138,12 @@ SliceLayout make_slice_layout(const GridFrame& frame, const SortedStrands& sorte
     layout.slices = frame.voxels(axis);
     layout.size_u = frame.voxels(layout.axis_u);
     layout.size_v = frame.voxels(layout.axis_v);
-    const auto tile_of = place_tiles(frame, sorted, layout);
-    copy_tensors(bricks, tile_of, layout);
+    place_tiles(frame, sorted, layout);
+    copy_tensors(bricks, layout);
     progress.check();
     auto slots = place_slots(frame, sorted, layout);
     resize_slots(layout);
-    fill_slots(sorted, tile_of, std::move(slots), layout);
+    fill_slots(sorted, std::move(slots), layout);
     return layout;
 }
 

@@ -30,7 +30,8 @@ struct SliceLayout {
 
     std::vector<std::uint32_t> tile_begin;  ///< [slices + 1]
     std::vector<Tile> tiles;
-    std::vector<std::uint16_t> tensors;  ///< half floats [(tile * 6 + component) * 64 + texel]
+    std::vector<std::array<std::uint32_t, 8>> brick_tiles;  ///< [brick number][slice in it]: the tile
+    std::vector<std::uint16_t> tensors;                     ///< half floats [(tile * 6 + component) * 64 + texel]
 
     std::vector<std::uint32_t> slot_begin;      ///< [slices + 1]
     std::vector<float> slot_u, slot_v, slot_s;  ///< vertex position in grid space along u, v and the axis

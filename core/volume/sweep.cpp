@@ -22,12 +22,23 @@ struct RayPath {
     float per_slice;              ///< length of the way through one slice, in voxels
     std::array<float, 6> square;  ///< l l^T, off-diagonal entries doubled: l.T.l = square . T
     Vec3f direction;
+    std::array<float, SweepDirection::most_weights> weights;
     int base_u, base_v;  ///< ray stored first is (base_u, base_v)
     int stride, rows;
 
     static int shift(float slope, int s) {
         return static_cast<int>(std::floor((static_cast<float>(s) + 0.5f) * slope + 0.5f));
     }
+};
+
+/// What one walk through the slices reads.
+struct Walk {
+    const SliceLayout& layout;
+    const ReceiverSlots* receivers;
+    std::span<const RayPath> paths;
+    bool ascending;
+    float scale;
+    SweepMask mask;
 };
 
 }  // namespace hairbake
@@ -101,61 +112,131 @@ HWY_INLINE V depth_at(const RayPath& path, const float* depth, const float* slab
     return hn::MulAdd(inside, hn::GatherIndex(d, slab, texel), before);
 }
 
-/// Reads every slot of slice s before the slice is added to the rays.
-void read_slots(const SliceLayout& layout, int s, bool ascending, std::span<const RayPath> paths, float scale,
-                std::span<const std::uint8_t> seen, const SweepScratch& scratch, SweepSums& sums) {
+/// Adds value * scale to the integers at `sum`.
+template <class V>
+HWY_INLINE void add_fixed(V value, V scale, std::int32_t* sum) {
+    const I di;
+    hn::StoreU(hn::Add(hn::LoadU(di, sum), hn::NearestInt(hn::Mul(value, scale))), di, sum);
+}
+
+/// t where the slots from i on see the light of direction k, else 0.
+template <class V>
+HWY_INLINE V mask_blocked(V t, std::span<const std::uint8_t> mask, std::size_t i, std::size_t k) {
+    if (mask.empty()) return t;
     const F d;
     const I di;
-    const hn::Rebind<std::uint8_t, I> d8;
-    const auto scale_v = hn::Set(d, scale);
+    const auto bits = hn::PromoteTo(di, hn::LoadU(hn::Rebind<std::uint8_t, I>(), &mask[i]));
+    return hn::IfThenElseZero(hn::RebindMask(d, hn::TestBit(bits, hn::Set(di, 1 << k))), t);
+}
+
+/// Reads every slot of slice s before the slice is added to the rays.
+void read_slots(const Walk& walk, int s, const SweepScratch& scratch, SweepSums& sums) {
+    const SliceLayout& layout = walk.layout;
+    const std::span<const RayPath> paths = walk.paths;
+    const F d;
+    const I di;
+    const auto scale_v = hn::Set(d, walk.scale);
     const std::size_t end = layout.slot_begin[static_cast<std::size_t>(s) + 1];
     for (std::size_t i = layout.slot_begin[static_cast<std::size_t>(s)]; i < end; i += hn::Lanes(d)) {
         const auto u = hn::LoadU(d, &layout.slot_u[i]), v = hn::LoadU(d, &layout.slot_v[i]);
         const auto along = hn::LoadU(d, &layout.slot_s[i]);
         const auto texel = hn::BitCast(di, hn::LoadU(hn::RebindToUnsigned<F>(), &layout.slot_texel[i]));
         // Share of the slice between the vertex and the light's side of it.
-        const auto inside = ascending ? hn::Sub(hn::Set(d, static_cast<float>(s + 1)), along)
-                                      : hn::Sub(along, hn::Set(d, static_cast<float>(s)));
-        auto t0 = hn::Zero(d), tx = t0, ty = t0, tz = t0;
+        const auto inside = walk.ascending ? hn::Sub(hn::Set(d, static_cast<float>(s + 1)), along)
+                                           : hn::Sub(along, hn::Set(d, static_cast<float>(s)));
+        alignas(64) float t[kSweepLanes][16];
         for (std::size_t k = 0; k < paths.size(); ++k) {
             const auto depth =
                 depth_at(paths[k], scratch.depth[k].data(), scratch.slab[k].data(), u, v, along, inside, texel);
-            auto t = hn::Exp(d, hn::Neg(depth));
-            if (!seen.empty()) {
-                const auto bits = hn::PromoteTo(di, hn::LoadU(d8, &seen[i]));
-                t = hn::IfThenElseZero(hn::RebindMask(d, hn::TestBit(bits, hn::Set(di, 1 << k))), t);
-            }
-            t0 = hn::Add(t0, t);
-            tx = hn::MulAdd(t, hn::Set(d, paths[k].direction.x), tx);
-            ty = hn::MulAdd(t, hn::Set(d, paths[k].direction.y), ty);
-            tz = hn::MulAdd(t, hn::Set(d, paths[k].direction.z), tz);
+            hn::Store(mask_blocked(hn::Exp(d, hn::Neg(depth)), walk.mask.vertices, i, k), d, t[k]);
         }
-        const auto add = [&](std::size_t component, auto value) {
-            std::int32_t* sum = &sums.values[component * sums.slots + i];
-            hn::StoreU(hn::Add(hn::LoadU(di, sum), hn::NearestInt(hn::Mul(value, scale_v))), di, sum);
-        };
-        add(0, t0);
-        add(1, tx);
-        add(2, ty);
-        add(3, tz);
+        for (std::size_t c = 0; c < sums.components; ++c) {
+            auto value = hn::Zero(d);
+            for (std::size_t k = 0; k < paths.size(); ++k)
+                value = hn::MulAdd(hn::Load(d, t[k]), hn::Set(d, paths[k].weights[c]), value);
+            add_fixed(value, scale_v, &sums.values[c * sums.slots + i]);
+        }
     }
 }
 
-void walk(const SliceLayout& layout, std::span<const RayPath> paths, bool ascending, float scale,
-          std::span<const std::uint8_t> seen, SweepScratch& scratch, SweepSums& sums) {
-    for (int step = 0; step < layout.slices; ++step) {
-        // Light comes from the upper end when the direction ascends along the axis.
-        const int s = ascending ? layout.slices - 1 - step : step;
-        const std::uint32_t begin = layout.tile_begin[static_cast<std::size_t>(s)];
-        const std::uint32_t end = layout.tile_begin[static_cast<std::size_t>(s) + 1];
-        if (begin == end) continue;
-        const auto at = [&](std::uint32_t tile) { return std::size_t{SliceLayout::tile_texels} * (tile - begin); };
-        for (std::size_t k = 0; k < paths.size(); ++k)
-            if (scratch.slab[k].size() < at(end)) scratch.slab[k].resize(at(end));
-        for (std::uint32_t tile = begin; tile < end; ++tile) fill_slab(layout, tile, at(tile), paths, scratch);
-        read_slots(layout, s, ascending, paths, scale, seen, scratch, sums);
-        for (std::uint32_t tile = begin; tile < end; ++tile) add_slab(layout, tile, at(tile), s, paths, scratch);
+/// Optical depth of a group of receiver slots along one path: no ray passes a point outside the lattice, and a point
+/// without a texel has nothing in its own voxel.
+template <class V>
+HWY_INLINE V receiver_depth(const RayPath& path, const float* depth, const float* slab, V u, V v, V s, V inside,
+                            hn::Vec<I> texel) {
+    const F d;
+    const I di;
+    const auto ray_u =
+        hn::Sub(hn::NegMulAdd(s, hn::Set(d, path.slope_u), u), hn::Set(d, static_cast<float>(path.base_u)));
+    const auto ray_v =
+        hn::Sub(hn::NegMulAdd(s, hn::Set(d, path.slope_v), v), hn::Set(d, static_cast<float>(path.base_v)));
+    const auto zero = hn::Zero(d);
+    const auto met = hn::And(hn::And(hn::Ge(ray_u, zero), hn::Lt(ray_u, hn::Set(d, static_cast<float>(path.stride)))),
+                             hn::And(hn::Ge(ray_v, zero), hn::Lt(ray_v, hn::Set(d, static_cast<float>(path.rows)))));
+    const auto column = hn::ConvertTo(di, hn::IfThenElseZero(met, ray_u));
+    const auto row = hn::ConvertTo(di, hn::IfThenElseZero(met, ray_v));
+    const auto at = hn::Add(hn::Mul(row, hn::Set(di, path.stride)), column);
+    const auto before = hn::IfThenElseZero(met, hn::GatherIndex(d, depth, at));
+    const auto has_texel = hn::RebindMask(d, hn::Gt(texel, hn::Set(di, ReceiverSlots::no_texel)));
+    const auto own = hn::IfThenElseZero(has_texel, hn::GatherIndex(d, slab, hn::Max(texel, hn::Zero(di))));
+    return hn::MulAdd(hn::IfThenElseZero(has_texel, inside), own, before);
+}
+
+/// Reads the receiver's slots of slice s, -1 to layout.slices, before the slice is added to the rays.
+void read_receivers(const Walk& walk, int s, const SweepScratch& scratch, SweepSums& sums) {
+    const ReceiverSlots& slots = *walk.receivers;
+    const std::span<const RayPath> paths = walk.paths;
+    const F d;
+    const I di;
+    const auto scale_v = hn::Set(d, walk.scale), zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    const std::size_t end = slots.begin[static_cast<std::size_t>(s + 2)];
+    for (std::size_t i = slots.begin[static_cast<std::size_t>(s + 1)]; i < end; i += hn::Lanes(d)) {
+        const auto u = hn::LoadU(d, &slots.u[i]), v = hn::LoadU(d, &slots.v[i]), along = hn::LoadU(d, &slots.s[i]);
+        const auto nx = hn::LoadU(d, &slots.normal_x[i]), ny = hn::LoadU(d, &slots.normal_y[i]),
+                   nz = hn::LoadU(d, &slots.normal_z[i]);
+        const auto texel = hn::LoadU(di, &slots.texel[i]);
+        const auto inside = walk.ascending ? hn::Sub(hn::Set(d, static_cast<float>(s + 1)), along)
+                                           : hn::Sub(along, hn::Set(d, static_cast<float>(s)));
+        auto plain = zero, weighted = zero, weight = zero, cosine = zero;
+        for (std::size_t k = 0; k < paths.size(); ++k) {
+            const Vec3f& l = paths[k].direction;
+            const auto n_dot_l = hn::Max(
+                zero, hn::MulAdd(nx, hn::Set(d, l.x), hn::MulAdd(ny, hn::Set(d, l.y), hn::Mul(nz, hn::Set(d, l.z)))));
+            const auto above = hn::IfThenElseZero(hn::Gt(n_dot_l, zero), one);
+            const auto depth =
+                receiver_depth(paths[k], scratch.depth[k].data(), scratch.slab[k].data(), u, v, along, inside, texel);
+            const auto t = mask_blocked(hn::Exp(d, hn::Neg(depth)), walk.mask.receivers, i, k);
+            plain = hn::MulAdd(above, t, plain);
+            weighted = hn::MulAdd(n_dot_l, t, weighted);
+            weight = hn::Add(weight, above);
+            cosine = hn::Add(cosine, n_dot_l);
+        }
+        std::int32_t* sum = &sums.values[i];
+        add_fixed(plain, scale_v, sum);
+        add_fixed(weighted, scale_v, sum + sums.slots);
+        add_fixed(weight, scale_v, sum + 2 * sums.slots);
+        add_fixed(cosine, scale_v, sum + 3 * sums.slots);
     }
+}
+
+void walk_slice(const Walk& walk, int s, SweepScratch& scratch, SweepTotals& totals) {
+    const SliceLayout& layout = walk.layout;
+    const bool in_grid = s >= 0 && s < layout.slices;
+    const std::uint32_t begin = in_grid ? layout.tile_begin[static_cast<std::size_t>(s)] : 0;
+    const std::uint32_t end = in_grid ? layout.tile_begin[static_cast<std::size_t>(s) + 1] : 0;
+    const auto at = [&](std::uint32_t tile) { return std::size_t{SliceLayout::tile_texels} * (tile - begin); };
+    for (std::size_t k = 0; k < walk.paths.size(); ++k)
+        if (scratch.slab[k].size() < at(end)) scratch.slab[k].resize(at(end));
+    for (std::uint32_t tile = begin; tile < end; ++tile) fill_slab(layout, tile, at(tile), walk.paths, scratch);
+    if (begin < end && totals.vertices.slots > 0) read_slots(walk, s, scratch, totals.vertices);
+    if (totals.receivers.slots > 0) read_receivers(walk, s, scratch, totals.receivers);
+    for (std::uint32_t tile = begin; tile < end; ++tile) add_slab(layout, tile, at(tile), s, walk.paths, scratch);
+}
+
+/// Light comes from the upper end when the direction ascends along the axis.
+void walk_slices(const Walk& walk, SweepScratch& scratch, SweepTotals& totals) {
+    for (int step = -1; step <= walk.layout.slices; ++step)
+        walk_slice(walk, walk.ascending ? walk.layout.slices - 1 - step : step, scratch, totals);
 }
 
 }  // namespace hairbake::HWY_NAMESPACE
@@ -165,7 +246,7 @@ HWY_AFTER_NAMESPACE();
 namespace hairbake {
 namespace {
 
-HWY_EXPORT(walk);
+HWY_EXPORT(walk_slices);
 
 /// The rays of a lattice line that meet any of `size` columns in any slice, with a margin of two rays.
 void cover(float slope, int slices, int size, int& base, int& count) {
@@ -174,8 +255,9 @@ void cover(float slope, int slices, int size, int& base, int& count) {
     count = size - std::min(first, last) + 2 - base;
 }
 
-RayPath make_path(const SliceLayout& layout, const Vec3d& l) {
+RayPath make_path(const SliceLayout& layout, const SweepDirection& direction) {
     RayPath path;
+    const Vec3d& l = direction.l;
     const double major = l[layout.axis];
     path.slope_u = static_cast<float>(l[layout.axis_u] / major);
     path.slope_v = static_cast<float>(l[layout.axis_v] / major);
@@ -183,6 +265,8 @@ RayPath make_path(const SliceLayout& layout, const Vec3d& l) {
     const Vec3f f(l);
     path.square = {f.x * f.x, f.y * f.y, f.z * f.z, 2 * f.x * f.y, 2 * f.x * f.z, 2 * f.y * f.z};
     path.direction = f;
+    path.weights.fill(0);
+    std::copy(direction.weights.begin(), direction.weights.end(), path.weights.begin());
     cover(path.slope_u, layout.slices, layout.size_u, path.base_u, path.stride);
     cover(path.slope_v, layout.slices, layout.size_v, path.base_v, path.rows);
     return path;
@@ -196,16 +280,18 @@ float sweep_scale(int directions) {
     return static_cast<float>(1 << bits);
 }
 
-void sweep(const SliceLayout& layout, std::span<const Vec3d> directions, float scale,
-           std::span<const std::uint8_t> seen, SweepScratch& scratch, SweepSums& sums) {
+void sweep(const SliceLayout& layout, const ReceiverSlots* receivers, std::span<const SweepDirection> directions,
+           float scale, const SweepMask& mask, SweepScratch& scratch, SweepTotals& totals) {
     std::array<RayPath, kSweepLanes> paths;
     for (std::size_t k = 0; k < directions.size(); ++k) {
         paths[k] = make_path(layout, directions[k]);
         scratch.depth[k].assign(static_cast<std::size_t>(paths[k].stride) * static_cast<std::size_t>(paths[k].rows), 0);
+        if (scratch.slab[k].empty()) scratch.slab[k].resize(SliceLayout::tile_texels);  // receivers read one always
     }
-    HWY_DYNAMIC_DISPATCH(walk)
-    (layout, std::span<const RayPath>(paths.data(), directions.size()), directions[0][layout.axis] > 0, scale, seen,
-     scratch, sums);
+    const Walk walk{
+        layout, receivers, std::span<const RayPath>(paths.data(), directions.size()), directions[0].l[layout.axis] > 0,
+        scale,  mask};
+    HWY_DYNAMIC_DISPATCH(walk_slices)(walk, scratch, totals);
 }
 
 }  // namespace hairbake

@@ -17,6 +17,22 @@ using Json = nlohmann::json;
 
 const std::vector<WrittenFile> files{{"a.npy", "12ab", 99, {2, 3}, "two by three"}, {"b.json", "cd", 1, {}, "text"}};
 
+TEST(Manifest, TellsOfHarmonicsConesAndTheReceiver) {
+    BakeResult result = test_support::small_result();
+    EXPECT_FALSE(Json::parse(make_manifest(result, files))["transmittance"].contains("receiver"));
+    result.request.transmittance.sh_bands = 2;
+    result.request.transmittance.bent_cone = true;
+    result.hair_inputs.receiver = "ee";
+    result.receiver.emplace();
+    result.receiver->positions.resize(2);
+    result.transmittance->receiver = {0.25f, 0.5f, 0.75f, 1};
+    const Json manifest = Json::parse(make_manifest(result, files));
+    EXPECT_EQ(manifest["transmittance"]["sh_bands"], 2);
+    EXPECT_EQ(manifest["transmittance"]["bent_cone"], true);
+    EXPECT_EQ(manifest["transmittance"]["receiver"], Json({{"positions", 2}, {"mean", 0.5}, {"cosine_mean", 0.75}}));
+    EXPECT_EQ(manifest["inputs"]["receiver"]["sha256"], "ee");
+}
+
 TEST(Manifest, HoldsTheRequestAsRunTheInputsAndTheFiles) {
     const BakeResult result = test_support::small_result();
     const Json manifest = Json::parse(make_manifest(result, files));

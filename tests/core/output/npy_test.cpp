@@ -45,6 +45,30 @@ print('read'))",
     EXPECT_EQ(python.output, "read\n");
 }
 
+TEST(Npy, NumpyReadsHarmonicsBentConesAndTheReceiver) {
+    const TemporaryFolder folder;
+    Transmittance transmittance;
+    transmittance.average.resize(5);
+    for (int i = 0; i < 5 * 9; ++i) transmittance.sh.push_back(0.25f * float(i));
+    for (int i = 0; i < 5 * 4; ++i) transmittance.bent_cone.push_back(-0.5f * float(i));
+    for (int i = 0; i < 3 * 2; ++i) transmittance.receiver.push_back(0.125f * float(i));
+    const auto files = write_directional_npy(transmittance, 3, true, true, folder / "");
+    ASSERT_EQ(files.size(), 3u);
+    EXPECT_EQ(files[0].shape, (std::vector<std::size_t>{5, 9}));
+    const auto python = test_support::run_python(R"(
+import numpy, sys
+f = sys.argv[1]
+for name, shape, step in ('transmittance_sh', (5, 9), .25), ('bent_cone', (5, 4), -.5), ('receiver', (3, 2), .125):
+    a = numpy.load(f + '/' + name + '.npy')
+    assert a.dtype == '<f4' and a.flags.c_contiguous and a.shape == shape, name
+    assert (a == step * numpy.arange(a.size).reshape(shape)).all(), name
+print('read'))",
+                                                 (folder / "").string());
+    EXPECT_EQ(python.output, "read\n");
+    const TemporaryFolder nothing;
+    EXPECT_TRUE(write_directional_npy(transmittance, 0, false, false, nothing / "").empty());
+}
+
 TEST(Npy, ReadsItsOwnFilesAndThoseOfNumpy) {
     const TemporaryFolder folder;
     write_transmittance_npy(std::vector<float>{1, 2, 3}, folder / "");

@@ -73,6 +73,16 @@ TEST(Request, MeshesWantHairBesideThem) {
     expect_refused(request, "receiver", {"empty"});
 }
 
+TEST(Request, OpacityMapsTakeNoOccluder) {
+    BakeRequest request;
+    request.hair = "a.hair";
+    request.occluder = "head.obj";
+    request.transmittance.method = TransmittanceMethod::opacity_maps;
+    expect_refused(request, "occluder", {"opacity_maps", "volume and trace"});
+    request.transmittance.method = TransmittanceMethod::trace;
+    EXPECT_NO_THROW(validate(request));
+}
+
 TEST(Request, ALightHasALengthAndNoNegativeIrradiance) {
     BakeRequest request;
     request.environment = "a.hdr";

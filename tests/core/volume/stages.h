@@ -35,12 +35,16 @@ inline std::vector<float> sweep_one(const StrandGeometry& strands, const Stages&
         if (std::abs(l[a]) > std::abs(l[axis])) axis = a;
     const SliceLayout layout = make_slice_layout(stages.frame, stages.sorted, stages.bricks, axis, progress);
     SweepScratch scratch;
-    SweepSums sums(layout.slot_vertex.size());
-    sweep(layout, std::span(&l, 1), sweep_scale(1), {}, scratch, sums);
+    const double one = 1;
+    const SweepDirection direction{l, std::span(&one, 1)};
+    SweepTotals totals;
+    totals.vertices = SweepSums(layout.slot_vertex.size(), 1);
+    sweep(layout, nullptr, std::span(&direction, 1), sweep_scale(1), {}, scratch, totals);
     std::vector<float> t(strands.vertex_count());
     for (std::size_t i = 0; i < layout.slot_vertex.size(); ++i)
         if (layout.slot_vertex[i] != SliceLayout::no_vertex)
-            t[stages.sorted.vertices[layout.slot_vertex[i]]] = static_cast<float>(sums.values[i]) / sweep_scale(1);
+            t[stages.sorted.vertices[layout.slot_vertex[i]]] =
+                static_cast<float>(totals.vertices.values[i]) / sweep_scale(1);
     return t;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/base/direction_moments.h"
 #include "tests/core/volume/stages.h"
 #include "tests/support/strand_models.h"
 
@@ -114,8 +115,12 @@ TEST(Sweep, OfTwoDirectionsTogetherIsTheSumOfBoth) {
     const SliceLayout layout = make_slice_layout(stages.frame, stages.sorted, stages.bricks, 0, progress);
     const std::vector<Vec3d> both{normalized(Vec3d(1, 0.3, 0.2)), normalized(Vec3d(1, -0.8, 0.6))};
     SweepScratch scratch;
-    SweepSums sums(layout.slot_vertex.size());
-    sweep(layout, both, sweep_scale(2), {}, scratch, sums);
+    const DirectionMoments moments(both, 0, true);
+    const std::vector<SweepDirection> directions{{both[0], moments.weights(0)}, {both[1], moments.weights(1)}};
+    SweepTotals totals;
+    totals.vertices = SweepSums(layout.slot_vertex.size(), 4);
+    sweep(layout, nullptr, directions, sweep_scale(2), {}, scratch, totals);
+    const SweepSums& sums = totals.vertices;
     const auto a = sweep_one(block.strands, stages, both[0]), b = sweep_one(block.strands, stages, both[1]);
     for (std::size_t i = 0; i < layout.slot_vertex.size(); ++i) {
         if (layout.slot_vertex[i] == SliceLayout::no_vertex) continue;
