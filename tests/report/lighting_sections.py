@@ -44,7 +44,7 @@ def sh_maps(scene, page):
                  "what the bake's manifest says beforehand. Both per kind of map.")
     rows, pictures = [], []
     for sky, label in SKIES.items():
-        exact, _ = scene.bake(f"exact-{sky}", sky)
+        exact, _ = scene.bake(f"exact-{sky}", sky, head=True)
         for bands in ("published", 12, 16, 24, "auto"):
             diffuse, specular = (3, 8) if bands == "published" else (bands, bands)
             folder, manifest = scene.bake(f"sh-{bands}-{sky}", sky, irradiance__method="sh",
@@ -112,31 +112,33 @@ def decoupling(scene, page):
                  "The method takes the transmittance out of the integral: A(x) times the light, instead of the light "
                  "times the transmittance of its direction. Nobody has published what that costs. Reference: the sum over "
                  "the environment with traced shadow rays inside (mode reference). RMSE over the mean, over the pixels "
-                 "that show hair. The columns leave one approximation out after another; directional transmittance is "
+                 "that show hair; the head hides light too. The rows leave one approximation out after another; directional transmittance is "
                  "baked by the same sweep and put inside the sum.")
     table, shown = {}, []
+    # Bakes of hair alone may be lit by any sky.
+    traced, _ = scene.bake("traced", head=True, transmittance__method="trace")
+    harmonics = {bands: scene.bake(f"sh-transmittance-{bands}", head=True, transmittance__sh_bands=bands,
+                                   transmittance__bent_cone="true")[0] for bands in (2, 3, 4)}
     for sky, label in SKIES.items():
-        folder, _ = scene.bake(f"directional-2-{sky}", sky, transmittance__sh_bands=2, transmittance__bent_cone=True)
-        black = ("--no-background",)
-        light = ("--light-samples", scene.size.light_samples)
-        reference = scene.picture(f"reference-{sky}", folder, *black, "--mode", "reference", *light)
+        folder, _ = scene.bake(f"exact-{sky}", sky, head=True)
+        black, lit = ("--no-background",), ("--env", scene.sky(sky))
+        reference = scene.picture(f"reference-{sky}", folder, *black, "--mode", "reference", "--light-samples",
+                                  scene.size.light_samples)
         twice = scene.picture(f"reference-{sky}-twice", folder, *black, "--mode", "reference", "--light-samples",
                               2 * scene.size.light_samples)
-        variants = {"maps and A (mode baked)": (folder, ()), "every light, A (mode brute)": (folder, ("--mode", "brute"))}
-        traced, _ = scene.bake(f"traced-{sky}", sky, transmittance__method="trace")
-        variants["every light, traced A"] = (traced, ("--mode", "brute"))
-        for bands in (2, 3, 4):
-            more, _ = scene.bake(f"directional-{bands}-{sky}", sky, transmittance__sh_bands=bands,
-                                 **({"transmittance__bent_cone": True} if bands == 2 else {}))
-            variants[f"every light, SH transmittance of {bands} bands"] = (more, ("--mode", "directional"))
-        variants["every light, bent cone"] = (folder, ("--mode", "directional", "--directional", "bent-cone"))
+        variants = {"maps and A (mode baked)": (folder, ()), "every light, A (mode brute)": (folder, ("--mode", "brute")),
+                    "every light, traced A": (traced, ("--mode", "brute", *lit))}
+        for bands, more in harmonics.items():
+            variants[f"every light, SH transmittance of {bands} bands"] = (more, ("--mode", "directional", *lit))
+        variants["every light, bent cone"] = (harmonics[2], ("--mode", "directional", "--directional",
+                                                              "bent-cone", *lit))
+        shown.append((f"{reference}.png", f"{label}: reference"))
         for name, (source, arguments) in variants.items():
             short = f"decoupled-{sky}-{list(variants).index(name)}"
             picture = scene.picture(short, source, *black, *arguments)
             figures = scene.hairbake.diff(reference, picture, scene.beauty_scale)
             table.setdefault(name, []).append(where_lit(figures))
             if name.startswith("maps") or "of 4" in name or "cone" in name:
-                shown += [] if any(reference in file for file, _ in shown) else [(f"{reference}.png", f"{label}: reference")]
                 shown += [(f"{picture}.png", f"{label}: {name}"), (figures["picture"], f"{label}: minus reference")]
         # Same pixel samples, independent lights; the variances are v and v / 2, so their difference has 1.5 v.
         figures = scene.hairbake.diff(reference, twice, scene.beauty_scale)

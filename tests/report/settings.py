@@ -12,7 +12,7 @@ class Size:
     map_width: int = 1024
     pixels: int = 320
     samples: int = 4
-    light_samples: int = 16
+    light_samples: int = 8
     reference_vertices: int = 500
     full: bool = False  # also the published models
 
@@ -46,9 +46,11 @@ class Scene:
         """File of a sky."""
         return self.sample / f"{name}.hdr"
 
-    def bake(self, name, sky=None, hair=None, **fields):
-        """Manifest and folder of a bake of the wavy groom (or `hair`) with the report's strand settings."""
+    def bake(self, name, sky=None, hair=None, head=False, **fields):
+        """Folder and manifest of a bake of the wavy groom (or `hair`) with the report's strand settings; `head`: the head
+        stops light."""
         defaults = {"strand__width_scale": self.size.width_scale, "transmittance__reference_vertices": 0}
+        defaults.update({"occluder": self.mesh} if head else {})
         folder = self.folder / "bake" / name
         manifest = self.hairbake.bake(folder, hair or self.hair, self.sky(sky) if sky else None, **{**defaults, **fields})
         return folder, manifest

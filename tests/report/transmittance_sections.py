@@ -6,10 +6,10 @@ from settings import SKIES
 def with_and_without(scene, page):
     """Pictures with and without A."""
     page.section("With and without transmittance",
-                 "Maps of the default size, the same exposure with A and with A = 1 (the hair casts no shadow).")
+                 "Maps of the default size, the same exposure with A and with A = 1 (nothing casts a shadow on the hair). The head hides light.")
     pictures, rows = [], []
     for sky, label in SKIES.items():
-        folder, _ = scene.bake(f"exact-{sky}", sky)
+        folder, _ = scene.bake(f"exact-{sky}", sky, head=True)
         common = ("--mesh", scene.mesh)
         lit = scene.picture(f"with-{sky}", folder, *common)
         bare = scene.picture(f"without-{sky}", folder, *common, "--no-transmittance")
@@ -17,7 +17,7 @@ def with_and_without(scene, page):
         pictures += [(f"{lit}.png", f"{label}, with A"), (f"{bare}.png", f"{label}, without A")]
         rows.append([label, percent(figures["rmse_over_mean"])])
     for channel in ("transmittance", "tangent"):
-        picture = scene.picture(channel, scene.bake("exact-sky", "sky")[0], "--channel", channel, "--mesh", scene.mesh)
+        picture = scene.picture(channel, scene.bake("exact-sky", "sky", head=True)[0], "--channel", channel, "--mesh", scene.mesh)
         pictures.append((f"{picture}.png", f"channel {channel}"))
     page.pictures(pictures)
     page.table(["sky", "RMS of what A takes away / mean of the picture"], rows)
@@ -49,13 +49,13 @@ def directions(scene, page):
                  "Published: random directions, 100 taken as the truth. Here the truth is the same method with 1,024 "
                  "Fibonacci directions, so that only the directions differ. Channel transmittance; the figures are over "
                  "all vertices.")
-    truth, _ = scene.bake("directions-1024", transmittance__directions=1024)
+    truth, _ = scene.bake("directions-1024", "overcast", transmittance__directions=1024)
     arguments = ("--channel", "transmittance", "--no-background")
     best = scene.picture("directions-1024", truth, *arguments)
     pictures, rows = [(f"{best}.png", "A of 1,024 directions")], []
     for kind in ("random", "fibonacci"):
         for count in (9, 25, 64, 100):
-            folder, _ = scene.bake(f"directions-{kind}-{count}", transmittance__direction_set=kind,
+            folder, _ = scene.bake(f"directions-{kind}-{count}", "overcast", transmittance__direction_set=kind,
                                    transmittance__directions=count)
             shown = scene.picture(f"directions-{kind}-{count}", folder, *arguments)
             figures = scene.hairbake.diff(best, shown, 0.2)
