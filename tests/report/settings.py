@@ -23,7 +23,7 @@ class Size:
                     reference_vertices=20)
 
 
-SAMPLE_VIEW = ("--target", "0,-6,0", "--distance", "62", "--azimuth", "35", "--elevation", "8")
+SAMPLE_VIEW = ("--target", "0,-7,0", "--distance", "74", "--azimuth", "35", "--elevation", "8")
 CROWN_VIEW = ("--target", "0,0,0", "--distance", "46", "--azimuth", "35", "--elevation", "42")
 
 

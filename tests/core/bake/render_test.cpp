@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <functional>
+#include <utility>
 
 #include "core/bake.h"
 #include "core/base/digest.h"
@@ -57,6 +58,36 @@ TEST_F(RenderedResult, IsTheSamePictureAsOfABakeInMemory) {
         request.mode = direct.mode = mode;
         EXPECT_TRUE(render(request, 0, progress).pixels == render(direct, 0, progress).pixels);
     }
+}
+
+TEST_F(RenderedResult, WithDirectionalTransmittanceAndAnOccluderIsTheSameAsOfABakeInMemory) {
+    BakeRequest baked = inputs.request();
+    baked.occluder = (inputs.folder / "samples" / "head.obj").string();
+    baked.transmittance.sh_bands = 2;
+    baked.transmittance.bent_cone = true;
+    BakeResult result = bake(baked, 0, progress);
+    write_result(result, inputs.folder / "directional", progress);
+    request.result = (inputs.folder / "directional").string();
+    request.mesh = baked.occluder;
+    RenderRequest direct = request;
+    direct.result.reset();
+    direct.bake = baked;
+    std::vector<std::vector<Vec3f>> pictures;
+    for (const auto& [mode, kind] : {std::pair{ShadingMode::directional, Directional::sh},
+                                     {ShadingMode::directional, Directional::bent_cone},
+                                     {ShadingMode::reference, Directional::automatic}}) {
+        request.mode = direct.mode = mode;
+        request.directional = direct.directional = kind;
+        pictures.push_back(render(request, 0, progress).pixels);
+        EXPECT_TRUE(pictures.back() == render(direct, 0, progress).pixels);
+    }
+    EXPECT_FALSE(pictures[0] == pictures[1]);
+    // The mode reference traces the occluder, so that it must be found.
+    std::filesystem::rename(inputs.folder / "samples" / "head.obj", inputs.folder / "moved.obj");
+    request.mesh.reset();
+    expect_error(ErrorKind::usage, "--occluder");
+    request.bake.occluder = (inputs.folder / "moved.obj").string();
+    EXPECT_NO_THROW(render(request, 0, progress));
 }
 
 TEST_F(RenderedResult, NeedsNoEnvironmentWhenNothingShowsOrUsesIt) {
