@@ -117,9 +117,10 @@ int serve(const Settings& settings) {
     const Router router(all_routes(service, access, metrics), access);
     Rim rim({settings.socket, settings.address, settings.port, settings.threads, settings.waiting},
             [&](HttpRequest& request) { return answer(router, metrics, request); });
+    std::jthread serving([&] { rim.serve(); });
+    rim.wait_until_serving();
     std::printf("hairbaked listens on %s\n", rim.address().c_str());
     std::fflush(stdout);
-    std::jthread serving([&] { rim.serve(); });
     wait_for_signal();
     spdlog::info("stopping");
     end_hard_after(std::chrono::seconds(4));

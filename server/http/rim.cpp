@@ -306,6 +306,7 @@ Rim::~Rim() = default;
 
 std::string Rim::address() const { return listener_->address; }
 void Rim::serve() { listener_->listen_after_bind(); }
+void Rim::wait_until_serving() const { listener_->wait_until_ready(); }
 void Rim::stop() { listener_->stop(); }
 
 }  // namespace hairbake

@@ -30,6 +30,8 @@ public:
     std::string address() const;
     /// Serves until stop() is called from another thread.
     void serve();
+    /// Returns once serve() accepts connections in another thread; from then on stop() works.
+    void wait_until_serving() const;
     void stop();
 
 private:

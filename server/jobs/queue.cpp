@@ -308,7 +308,7 @@ void Queue::died(const ClaimedStage& stage, const std::string& how) {
     if (again)
         released(stage);
     else
-        failed(stage, {"internal", how + ", for the " + std::to_string(max_crashes_ + 1) + "th time", ""});
+        failed(stage, {"internal", how + " (it was started " + std::to_string(max_crashes_ + 1) + " times)", ""});
 }
 
 void Queue::released(const ClaimedStage& stage) {

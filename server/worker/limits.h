@@ -16,4 +16,7 @@ struct Limits {
 /// Throws Error(internal) when a limit cannot be set, or the parent is gone already.
 void apply(const Limits& limits);
 
+/// From now on the end of memory, in whatever thread, is a last word on standard output (task.h) instead of an abort.
+void report_memory_exhaustion();
+
 }  // namespace hairbake

@@ -107,6 +107,7 @@ int main(int argc, char** argv) {
     CLI11_PARSE(app, argc, argv);
     LineProgress progress;
     try {
+        hairbake::report_memory_exhaustion();
         apply(limits);
         const std::jthread watch = watch_for_stop(progress);
         const int code = work(progress);

@@ -13,7 +13,7 @@ import time
 from pathlib import Path
 
 PROGRAMS = Path(os.environ.get("HAIRBAKE_PROGRAMS", Path(__file__).resolve().parents[2] / "build/bin"))
-PATIENCE = 120  # seconds; only ever reached by a failure
+PATIENCE = float(os.environ.get("HAIRBAKE_PATIENCE", "120"))  # seconds; only ever reached by a failure
 
 
 def sha256(data):
@@ -71,9 +71,9 @@ class Daemon:
 
     def spawn(self):
         self.write_config()
-        self.log = open(self.path / "log", "ab")
-        return subprocess.Popen([PROGRAMS / "hairbaked", "--config", self.path / "hairbake.toml"], stdout=subprocess.PIPE,
-                                stderr=self.log, stdin=subprocess.DEVNULL)
+        with open(self.path / "log", "ab") as log:
+            return subprocess.Popen([PROGRAMS / "hairbaked", "--config", self.path / "hairbake.toml"], stdout=subprocess.PIPE,
+                                    stderr=log, stdin=subprocess.DEVNULL)
 
     def start(self):
         self.process = self.spawn()
@@ -86,7 +86,6 @@ class Daemon:
         self.process.kill()
         self.process.wait()
         self.process.stdout.close()
-        self.log.close()
 
     def stop(self):
         """Asks it to stop; returns exit code and seconds."""
@@ -94,17 +93,28 @@ class Daemon:
         self.process.send_signal(signal.SIGTERM)
         code = self.process.wait(PATIENCE)
         self.process.stdout.close()
-        self.log.close()
         return code, time.monotonic() - begin
 
     def workers_running(self):
-        """Process ids of the daemon's children."""
-        try:
-            return [int(p) for p in Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text().split()] + [
-                int(p) for task in Path(f"/proc/{self.process.pid}/task").iterdir() if task.name != str(self.process.pid)
-                for p in (task / "children").read_text().split()]
-        except (FileNotFoundError, ProcessLookupError):
-            return []
+        """Process ids of the daemon's children that are not dead yet."""
+        found = []
+        for stat in Path("/proc").glob("[0-9]*/stat"):
+            try:
+                state, parent = stat.read_text().rsplit(")", 1)[1].split()[:2]
+            except (FileNotFoundError, ProcessLookupError):
+                continue
+            if int(parent) == self.process.pid and state != "Z":
+                found.append(int(stat.parent.name))
+        return found
+
+    def wait_for_worker(self, running=True):
+        """The first worker's process id; with running=False, waits until there is none."""
+        end = time.monotonic() + PATIENCE
+        while bool(children := self.workers_running()) != running:
+            if time.monotonic() > end:
+                raise AssertionError("no worker started" if running else "a worker does not end")
+            time.sleep(0.05)
+        return children[0] if running else None
 
     def ask(self, method, path, body=None, headers=None):
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=PATIENCE)
