@@ -8,14 +8,17 @@
 #include "core/base/digest.h"
 #include "core/base/direction_set.h"
 #include "core/base/parallel.h"
+#include "core/environment/environment_files.h"
 #include "core/environment/environment_reader.h"
 #include "core/hair/hair_file.h"
 #include "core/hair/strand_geometry.h"
+#include "core/mesh/mesh_file.h"
 #include "core/output/manifest.h"
 #include "core/output/result_files.h"
 #include "core/output/result_folder.h"
 #include "core/reference/tracer.h"
 #include "core/request_keys.h"
+#include "core/volume/opacity_transmittance.h"
 
 namespace hairbake {
 namespace {
@@ -61,11 +64,33 @@ Transmittance trace_all(const StrandScene& scene, const TransmittanceSettings& s
     return transmittance;
 }
 
+/// Which of its edges make a mesh something else than a closed surface, for a warning.
+std::string shell_of(const MeshTopology& topology) {
+    return std::to_string(topology.open_edges) + " of its " + std::to_string(topology.edges) +
+           " edges lie in one triangle only, " + std::to_string(topology.irregular_edges) +
+           " in more than two or in two that disagree about the outside";
+}
+
+void read_occluder(BakeResult& result) {
+    result.occluder = read_mesh(*result.request.occluder);
+    result.occluder_topology = topology_of(*result.occluder);
+    const MeshTopology& topology = result.occluder_topology;
+    if (!topology.closed)
+        result.warnings.push_back("the occluder is not closed (" + shell_of(topology) +
+                                  "): it is taken as a shell that stops light from both sides");
+    if (topology.inside_out)
+        result.warnings.push_back("the occluder's triangles run clockwise seen from outside: they are turned round");
+}
+
 void read_hair_stage(BakeResult& result, Progress& progress) {
     run_stage(result, progress, "read_hair", [&] {
-        result.hair_inputs.hair = digest_of_file(*result.request.hair);
+        const BakeRequest& request = result.request;
+        result.hair_inputs.hair = digest_of_file(*request.hair);
+        if (request.occluder) result.hair_inputs.occluder = digest_of_file(*request.occluder);
         result.transmittance_key = transmittance_key(result.hair_inputs, result.request);
-        result.hair = read_hair(*result.request.hair);
+        result.hair = read_hair(*request.hair);
+        if (request.occluder) read_occluder(result);
+        check_outputs(result);
     });
 }
 
@@ -74,20 +99,23 @@ void transmittance_stage(BakeResult& result, Progress& progress) {
     const TransmittanceSettings& settings = result.request.transmittance;
     StrandGeometry strands;
     std::optional<StrandScene> scene;
+    const TriangleMesh* occluder = result.occluder ? &*result.occluder : nullptr;
     run_stage(result, progress, "transmittance", [&] {
         strands = make_strand_geometry(*result.hair, result.request.strand);
         if (settings.method == TransmittanceMethod::trace) {
-            scene.emplace(strands, progress);
+            scene.emplace(strands, progress, occluder);
             result.transmittance = trace_all(*scene, settings, progress);
+        } else if (settings.method == TransmittanceMethod::opacity_maps) {
+            result.transmittance = bake_transmittance_opacity_maps({strands}, settings, progress);
         } else {
-            result.transmittance = bake_transmittance_volume({strands}, settings, progress);
+            result.transmittance = bake_transmittance_volume({strands, occluder}, settings, progress);
         }
     });
     result.hair_facts = facts_of(strands);
     add_warnings(result, result.transmittance->warnings);
     if (settings.reference_vertices == 0) return;
     run_stage(result, progress, "reference", [&] {
-        if (!scene) scene.emplace(strands, progress);
+        if (!scene) scene.emplace(strands, progress, occluder);
         result.error_bar =
             measure_error(*scene, result.transmittance->average, settings.reference_vertices, settings.seed, progress);
     });
@@ -96,7 +124,7 @@ void transmittance_stage(BakeResult& result, Progress& progress) {
 void read_environment_stage(BakeResult& result, Progress& progress) {
     run_stage(result, progress, "read_environment", [&] {
         const std::string& file = *result.request.environment;
-        result.environment_digest = digest_of_file(file);
+        result.environment_digest = digest_of_environment(file);
         result.irradiance_key = irradiance_key(result.environment_digest, result.request);
         result.environment = read_environment(file, result.request.environment_settings, progress);
     });

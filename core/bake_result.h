@@ -10,6 +10,8 @@
 #include "core/environment/environment_map.h"
 #include "core/hair/hair_model.h"
 #include "core/irradiance/irradiance_maps.h"
+#include "core/mesh/mesh_topology.h"
+#include "core/mesh/triangle_mesh.h"
 #include "core/reference/error_bar.h"
 #include "core/request.h"
 #include "core/request_keys.h"
@@ -43,6 +45,8 @@ struct BakeResult {
     std::string transmittance_key;    ///< SHA-256 of what the stage read
     HairFacts hair_facts;
     std::optional<HairModel> hair;  ///< kept only where the outputs need it
+    std::optional<TriangleMesh> occluder;
+    MeshTopology occluder_topology;  ///< with an occluder
     std::optional<Transmittance> transmittance;
     std::optional<ErrorBar> error_bar;  ///< with reference_vertices > 0
 

@@ -1,18 +1,16 @@
 #include "core/inspect.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <span>
-#include <system_error>
 
 #include "core/base/error.h"
+#include "core/environment/cube_map.h"
+#include "core/environment/environment_files.h"
 #include "core/environment/environment_reader.h"
-#include "core/environment/latlong.h"
 #include "core/hair/hair_file.h"
 #include "core/output/manifest.h"
 
@@ -37,7 +35,7 @@ Json range_of(std::span<const float> values, float otherwise) {
 Json hair_facts(const fs::path& file) {
     const HairModel model = read_hair(file);
     Json facts{{"kind", "hair model"},
-               {"format", "HAIR"},
+               {"format", model.format},
                {"strands", model.strand_count()},
                {"vertices", model.vertex_count()}};
     std::uint32_t longest = 0;
@@ -68,17 +66,22 @@ Json brightest_pixel(const EnvironmentMap& map) {
                                             [&](const Vec3f& a, const Vec3f& b) { return sum(a) < sum(b); });
     const auto index = static_cast<std::size_t>(brightest - map.pixels.begin());
     const std::size_t row = index / map.width, column = index % map.width;
-    return {{"row", row},
-            {"column", column},
-            {"radiance", triple(*brightest)},
-            {"direction", triple(direction_of(map, {column + 0.5, row + 0.5}))}};
+    Json facts = Json::object();
+    const bool cube = map.shape == EnvironmentShape::cube;
+    if (cube) facts["face"] = std::string(cube_face_name(static_cast<int>(row / map.width)));
+    facts["row"] = cube ? row % map.width : row;
+    facts["column"] = column;
+    facts["radiance"] = triple(*brightest);
+    facts["direction"] = triple(direction_of(map, {column + 0.5, row + 0.5}));
+    return facts;
 }
 
 Json mean_radiance(const EnvironmentMap& map) {
-    const LatLongRows rows = latlong_rows(map.width, map.height);
+    const TexelSolidAngles solid_angles = texel_solid_angles(map);
     Vec3d sum;
-    for (std::size_t i = 0; i < map.pixels.size(); ++i)
-        sum += Vec3d(map.pixels[i]) * rows.solid_angle[i / static_cast<std::size_t>(map.width)];
+    for (int y = 0; y < map.height; ++y)
+        for (int x = 0; x < map.width; ++x)
+            sum += Vec3d(map.pixels[std::size_t(y) * map.width + x]) * solid_angles.at(x, y);
     return triple(sum / (4 * std::numbers::pi));
 }
 
@@ -86,8 +89,12 @@ Json environment_facts(const fs::path& file, Progress& progress) {
     EnvironmentSettings settings;
     settings.invalid_radiance = InvalidRadiance::clamp;  // so that every map can be looked at; counted below
     const EnvironmentMap map = read_environment(file, settings, progress);
-    Json facts{{"kind", "environment map"}, {"format", map.source_format}, {"width", map.width},
-               {"height", map.height},      {"layout", map.layout},        {"primaries", map.primaries}};
+    Json facts{{"kind", "environment map"}, {"format", map.source_format}, {"layout", map.layout}};
+    if (map.shape == EnvironmentShape::cube)
+        facts["face_size"] = map.width;
+    else
+        facts.update({{"width", map.width}, {"height", map.height}});
+    facts["primaries"] = map.primaries;
     facts["low_dynamic_range"] = map.low_dynamic_range;
     facts["mean_radiance"] = mean_radiance(map);
     facts["brightest_pixel"] = brightest_pixel(map);
@@ -113,12 +120,15 @@ Json result_facts(const fs::path& folder) {
     return facts;
 }
 
-bool begins_as_hair(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw Error(ErrorKind::bad_input, file.string() + ": " + std::generic_category().message(errno));
-    char magic[4] = {};
-    stream.read(magic, sizeof magic);
-    return std::memcmp(magic, "HAIR", 4) == 0;
+/// Of a result, or of the six faces of an environment.
+Json folder_facts(const fs::path& folder, Progress& progress) {
+    if (fs::exists(folder / "manifest.json")) return result_facts(folder);
+    try {
+        return environment_facts(folder, progress);
+    } catch (const Error& error) {
+        throw Error(error.kind(), std::string(error.what()) + "; nor is there the manifest.json of a bake result",
+                    error.field());
+    }
 }
 
 std::string value_text(const Json& value) {
@@ -151,9 +161,11 @@ void add_lines(const Json& object, const std::string& prefix, std::string& lines
 std::string inspect(const fs::path& path, Progress& progress) {
     Json facts{{"path", path.string()}};
     if (fs::is_directory(path))
-        facts.update(result_facts(path));
+        facts.update(folder_facts(path, progress));
+    else if (find_environment_files(path).faces())
+        facts.update(environment_facts(path, progress));
     else
-        facts.update(begins_as_hair(path) ? hair_facts(path) : environment_facts(path, progress));
+        facts.update(is_hair_file(path) ? hair_facts(path) : environment_facts(path, progress));
     return facts.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -104,11 +104,15 @@ void check_irradiance(const IrradianceSettings& settings) {
         check_light("irradiance.lights[" + std::to_string(i) + "]", settings.lights[i]);
 }
 
-void check_outputs(const std::vector<std::string>& outputs) {
+void check_outputs(const BakeRequest& request) {
+    const std::vector<std::string>& outputs = request.outputs;
     for (auto output = outputs.begin(); output != outputs.end(); ++output) {
         check_choice("outputs", *output, output_formats());
         if (std::find(outputs.begin(), output, *output) != output) refuse("outputs", *output + " twice", "each once");
     }
+    // Known before the bake, so said before it.
+    if (request.hair && request.wants("vdb") && request.transmittance.method != TransmittanceMethod::volume)
+        refuse("outputs", "vdb with a transmittance.method that has no density grid", "vdb with the method volume");
 }
 
 }  // namespace
@@ -128,7 +132,7 @@ void validate(const BakeRequest& request) {
     check_transmittance(request.transmittance);
     check_environment(request.environment_settings);
     check_irradiance(request.irradiance);
-    check_outputs(request.outputs);
+    check_outputs(request);
 }
 
 }  // namespace hairbake

@@ -16,7 +16,7 @@ namespace hairbake {
 /// maps. The defaults here are the defaults everywhere (command line, HTTP, schema).
 struct BakeRequest {
     std::optional<std::string> hair;         ///< path of a hair model
-    std::optional<std::string> environment;  ///< path of an environment map
+    std::optional<std::string> environment;  ///< path of an environment: a file, or a folder or pattern of six
     std::optional<std::string> occluder;     ///< path of a mesh that stops light completely; needs hair
     std::optional<std::string> receiver;     ///< path of a mesh that hair shadows; needs hair
     StrandSettings strand;

@@ -10,7 +10,7 @@ from pathlib import Path
 # Patterns are regular expressions over paths from the root.
 TABLE = [
     (r"core/base/", [r"core/base/"]),
-    (r"core/hair/", [r"core/(base|hair)/"]),
+    (r"core/hair/", [r"core/(base|hair|mesh)/"]),
     (r"core/mesh/", [r"core/(base|mesh)/"]),
     (r"core/environment/", [r"core/(base|environment)/"]),
     (r"core/fiber/", [r"core/(base|fiber)/"]),

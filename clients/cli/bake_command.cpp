@@ -35,13 +35,14 @@ const std::vector<FieldFlag>& field_flags() {
         {"--sh-bands",
          {"irradiance.sh_bands.diffuse", "irradiance.sh_bands.specular"},
          "bands of sh: a number or auto"},
-        {"--outputs", {"outputs"}, "files beside the manifest, of npy,exr,hair"},
+        {"--layout", {"irradiance.layout"}, "of the environment: auto, latlong, faces, horizontal_cross ..."},
+        {"--outputs", {"outputs"}, "files beside the manifest, of npy,exr,hair,ktx2,dds,raw,glb,vdb"},
     };
     return flags;
 }
 
 struct Options {
-    std::optional<std::string> hair, environment, request_file, preset;
+    std::optional<std::string> hair, environment, occluder, request_file, preset;
     std::string folder, progress = "auto";
     std::map<std::string, std::string> fields;  ///< flag to value
     std::vector<std::string> settings;          ///< path=value
@@ -66,6 +67,7 @@ BakeRequest make_request(const Options& options) {
     if (options.request_file) merge_json(request, text_of(*options.request_file), *options.request_file);
     if (options.hair) request.hair = options.hair;
     if (options.environment) request.environment = options.environment;
+    if (options.occluder) request.occluder = options.occluder;
     for (const FieldFlag& flag : field_flags())
         if (const auto value = options.fields.find(flag.flag); value != options.fields.end())
             for (const char* path : flag.paths) set_field(request, path, value->second);
@@ -161,7 +163,10 @@ void add_bake_command(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("bake", "Bake transmittance and irradiance maps into a result folder");
     const auto options = std::make_shared<Options>();
     command->add_option("--hair", options->hair, "hair model; alone: transmittance only");
-    command->add_option("--env", options->environment, "HDR environment map; alone: irradiance maps only");
+    command->add_option(
+        "--env", options->environment,
+        "HDR environment: a picture, or a cube's six as a folder or sky_{face}.hdr; alone: irradiance maps only");
+    command->add_option("--occluder", options->occluder, "mesh (OBJ) that stops light completely: the head");
     command->add_option("--out", options->folder, "result folder: new, empty or an earlier result")->required();
     command->add_option("--preset", options->preset, "draft, final or paper (see hairbake presets)");
     command->add_option("--request", options->request_file, "JSON file with fields of the request");

@@ -12,9 +12,9 @@ void add_info_command(CLI::App& app, Action& action) {
         std::string path;
         bool json = false;
     };
-    CLI::App* command = app.add_subcommand("info", "Facts of a hair model, an environment map or a result folder");
+    CLI::App* command = app.add_subcommand("info", "Facts of a hair model, an environment or a result folder");
     const auto options = std::make_shared<Options>();
-    command->add_option("path", options->path, "file or result folder")->required()->type_name("FILE");
+    command->add_option("path", options->path, "file, folder or pattern with {face}")->required()->type_name("FILE");
     command->add_flag("--json", options->json, "as JSON");
     command->callback([options, &action] {
         action = [options] {

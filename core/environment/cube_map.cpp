@@ -7,23 +7,6 @@
 namespace hairbake {
 namespace {
 
-Vec3d unnormalized(CubePoint p) {
-    switch (p.face) {
-        case 0:
-            return {1, -p.b, -p.a};
-        case 1:
-            return {-1, -p.b, p.a};
-        case 2:
-            return {p.a, 1, p.b};
-        case 3:
-            return {p.a, -1, -p.b};
-        case 4:
-            return {p.a, -p.b, 1};
-        default:
-            return {-p.a, -p.b, -1};
-    }
-}
-
 double centre(int size, int index) { return (2 * index + 1) / double(size) - 1; }
 
 int texel_coordinate(int size, double a) {
@@ -34,8 +17,8 @@ int texel_coordinate(int size, double a) {
 // texel beyond the edge lands in the neighbour and moves less than that along the edge.
 std::size_t neighbour(int size, int face, int row, int column) {
     const double limit = 1 + 2e-3 / size;
-    return cube_texel_of(size, unnormalized({face, std::clamp(centre(size, column), -limit, limit),
-                                             std::clamp(centre(size, row), -limit, limit)}));
+    return cube_texel_of(size, cube_vector({face, std::clamp(centre(size, column), -limit, limit),
+                                            std::clamp(centre(size, row), -limit, limit)}));
 }
 
 Vec3d texel_or_neighbour(const CubeTexels& texels, int size, int face, int row, int column) {
@@ -55,7 +38,24 @@ std::string_view cube_face_name(int face) {
     return names.at(face);
 }
 
-Vec3d cube_direction(CubePoint point) { return normalized(unnormalized(point)); }
+Vec3d cube_vector(CubePoint p) {
+    switch (p.face) {
+        case 0:
+            return {1, -p.b, -p.a};
+        case 1:
+            return {-1, -p.b, p.a};
+        case 2:
+            return {p.a, 1, p.b};
+        case 3:
+            return {p.a, -1, -p.b};
+        case 4:
+            return {p.a, -p.b, 1};
+        default:
+            return {-p.a, -p.b, -1};
+    }
+}
+
+Vec3d cube_direction(CubePoint point) { return normalized(cube_vector(point)); }
 
 CubePoint cube_point(const Vec3d& d) {
     const Vec3d m{std::abs(d.x), std::abs(d.y), std::abs(d.z)};

@@ -47,6 +47,9 @@ inline std::size_t cube_texel_index(int size, int face, int row, int column) {
     return (std::size_t(face) * size + row) * size + column;
 }
 
+/// The table above: the direction of a point before normalising, on the cube of edge 2. Linear in a and b.
+Vec3d cube_vector(CubePoint point);
+
 /// Unit direction of a point, and the point of a direction (any length but 0; on an edge the axis named first
 /// in x, y, z wins).
 Vec3d cube_direction(CubePoint point);

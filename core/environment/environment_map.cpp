@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/environment/cube_map.h"
+#include "core/environment/latlong.h"
+
 namespace hairbake {
 
 using std::numbers::pi;
@@ -54,9 +57,17 @@ Matrix3 rotation_matrix(const std::array<double, 3>& rotation_deg) {
     return multiply(about_z, multiply(about_y, about_x));
 }
 
-Matrix3 map_to_world(const EnvironmentMap& map) { return multiply(map.rotation, convention_matrix(map.latlong)); }
+Matrix3 map_to_world(const EnvironmentMap& map) {
+    if (map.shape == EnvironmentShape::cube) return map.rotation;
+    return multiply(map.rotation, convention_matrix(map.latlong));
+}
 
 Vec3d direction_of(const EnvironmentMap& map, MapPoint point) {
+    if (map.shape == EnvironmentShape::cube) {
+        const int face = std::clamp(static_cast<int>(point.y / map.width), 0, cube_faces - 1);
+        const double a = 2 * point.x / map.width - 1, b = 2 * (point.y - double(face) * map.width) / map.width - 1;
+        return transform(map.rotation, cube_direction({face, a, b}));
+    }
     const double theta = pi * point.y / map.height, phi = 2 * pi * point.x / map.width - pi;
     return transform(map_to_world(map),
                      {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)});
@@ -64,8 +75,27 @@ Vec3d direction_of(const EnvironmentMap& map, MapPoint point) {
 
 MapPoint point_of(const EnvironmentMap& map, const Vec3d& direction) {
     const Vec3d p = transform_back(map_to_world(map), direction);
+    if (map.shape == EnvironmentShape::cube) {
+        const CubePoint c = cube_point(p);
+        return {(c.a + 1) / 2 * map.width, (c.face + (c.b + 1) / 2) * map.width};
+    }
     const double theta = std::atan2(std::hypot(p.x, p.y), p.z), phi = std::atan2(p.y, p.x);
     return {(phi + pi) / (2 * pi) * map.width, theta / pi * map.height};
+}
+
+TexelSolidAngles texel_solid_angles(const EnvironmentMap& map) {
+    if (map.shape == EnvironmentShape::cube)
+        return {std::vector<double>(map.height, 1), cube_texel_solid_angles(map.width), map.width, map.width};
+    return {latlong_rows(map.width, map.height).solid_angle, std::vector<double>(map.width, 1), 1, map.width};
+}
+
+std::string place_of_texel(const EnvironmentMap& map, std::size_t index) {
+    const std::size_t x = index % map.width, y = index / map.width;
+    const auto pixel = [&](std::size_t row) {
+        return "pixel (" + std::to_string(x) + ", " + std::to_string(row) + ")";
+    };
+    if (map.shape == EnvironmentShape::latlong) return pixel(y);
+    return pixel(y % map.width) + " of face " + std::string(cube_face_name(static_cast<int>(y / map.width)));
 }
 
 }  // namespace hairbake

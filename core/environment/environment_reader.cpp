@@ -4,7 +4,9 @@
 #include <sstream>
 
 #include "core/base/parallel.h"
-#include "core/environment/image_file.h"
+#include "core/environment/cube_layout.h"
+#include "core/environment/environment_assembly.h"
+#include "core/environment/environment_files.h"
 #include "core/environment/radiance_repair.h"
 
 namespace hairbake {
@@ -15,8 +17,10 @@ void check_settings(const EnvironmentSettings& settings) {
         throw Error(ErrorKind::usage, "irradiance." + field + " is " + found + "; allowed is " + allowed,
                     "irradiance." + field);
     };
-    if (settings.layout != "auto" && settings.layout != "latlong")
-        refuse("layout", '"' + settings.layout + '"', "\"auto\" or \"latlong\"");
+    if (settings.layout != "auto" && settings.layout != "latlong" && settings.layout != "faces" &&
+        !find_cube_layout(settings.layout))
+        refuse("layout", '"' + settings.layout + '"',
+               "auto, latlong, faces, horizontal_cross, vertical_cross, horizontal_strip or vertical_strip");
     for (const double angle : settings.rotation_deg)
         if (!std::isfinite(angle)) refuse("rotation_deg", std::to_string(angle), "finite");
     if (!(std::abs(settings.exposure_stops) <= 64))
@@ -25,28 +29,13 @@ void check_settings(const EnvironmentSettings& settings) {
         if (!(factor >= 0) || !std::isfinite(factor)) refuse("tint", std::to_string(factor), "finite and not negative");
 }
 
-// IEC 61966-2-1.
-float srgb_to_linear(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
-
-void linearize(EnvironmentMap& map, const Progress& progress) {
-    map.low_dynamic_range = true;
-    map.warnings.push_back("the image holds integers: decoded as sRGB, its dynamic range is low and lamps are clipped");
-    parallel_for(map.height, 16, [&](std::size_t begin, std::size_t end) {
-        progress.check();
-        for (std::size_t i = begin * map.width; i < end * map.width; ++i) {
-            Vec3f& p = map.pixels[i];
-            p = {srgb_to_linear(p.x), srgb_to_linear(p.y), srgb_to_linear(p.z)};
-        }
-    });
-}
-
 // Names the first pixel that left the range of single precision.
 [[noreturn]] void refuse_overflow(const EnvironmentMap& map, const std::string& file) {
     std::size_t i = 0;
     while (is_finite(map.pixels[i])) ++i;
     std::ostringstream text;
-    text << file << ": exposure and tint take the radiance at pixel (" << i % map.width << ", " << i / map.width
-         << ") beyond the range of single precision (3.4e38); lower irradiance.exposure_stops";
+    text << file << ": exposure and tint take the radiance at " << place_of_texel(map, i)
+         << " beyond the range of single precision (3.4e38); lower irradiance.exposure_stops";
     throw Error(ErrorKind::usage, text.str(), "irradiance.exposure_stops");
 }
 
@@ -70,30 +59,25 @@ void expose(EnvironmentMap& map, const EnvironmentSettings& settings, const std:
 
 }  // namespace
 
-EnvironmentMap read_environment(const std::filesystem::path& file, const EnvironmentSettings& settings,
+EnvironmentMap read_environment(const std::filesystem::path& path, const EnvironmentSettings& settings,
                                 Progress& progress) {
     check_settings(settings);
     progress.report("read_environment", 0);
-    ImageFile image = read_image_file(file, progress);
-    EnvironmentMap map;
-    map.width = image.width;
-    map.height = image.height;
-    map.pixels = std::move(image.pixels);
+    EnvironmentMap map = assemble_environment(find_environment_files(path), settings.layout, progress);
     map.latlong = settings.latlong;
     map.rotation = rotation_matrix(settings.rotation_deg);
-    map.source_format = image.format;
-    map.primaries = image.primaries;
-    map.warnings = std::move(image.warnings);
+    if (map.shape == EnvironmentShape::cube && settings.latlong != LatLong::gltf)
+        map.warnings.push_back("irradiance.latlong is " + std::string(name_of(settings.latlong)) +
+                               ", but the environment is a cube map: it was not used");
 
-    if (image.integer) linearize(map, progress);
-    repair_radiance(map, settings.invalid_radiance, file.string(), progress);
+    repair_radiance(map, settings.invalid_radiance, path.string(), progress);
     if (map.repairs.energy_removed > 0) {
         std::ostringstream text;
         text << map.repairs.negative_pixels << " pixels with negative radiance were set to 0, "
              << 100 * map.repairs.energy_removed / map.repairs.energy_total << " % of the light";
         map.warnings.push_back(text.str());
     }
-    expose(map, settings, file.string(), progress);
+    expose(map, settings, path.string(), progress);
     progress.report("read_environment", 1);
     return map;
 }

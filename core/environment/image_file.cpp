@@ -14,7 +14,7 @@
 namespace hairbake {
 namespace {
 
-constexpr int widest = 16384, highest = 8192, most_channels = 64;
+constexpr int most_channels = 64;
 constexpr std::int64_t pixels_per_piece = 1 << 20;
 
 struct Source {
@@ -44,12 +44,10 @@ std::string sniff(const Source& source) {
     source.fail("the file's first bytes are of no known image; allowed are HDR, EXR, TIFF, PFM and PNG");
 }
 
-void check_size(const Source& source, const OIIO::ImageSpec& spec, const std::string& format) {
+void check_size(const Source& source, const OIIO::ImageSpec& spec, const std::string& format, const SizeCheck& check) {
     const std::string size = std::to_string(spec.width) + " x " + std::to_string(spec.height);
-    if (spec.width < 2 || spec.height < 1 || spec.width > widest || spec.height > highest)
-        source.fail("the declared size is " + size + " pixels; allowed is up to 16384 x 8192");
-    if (spec.width != 2 * spec.height)
-        source.fail("the size is " + size + " pixels; a lat-long map is twice as wide as high (layout latlong)");
+    const std::string wrong = check(spec.width, spec.height);
+    if (!wrong.empty()) source.fail(wrong);
     if (spec.nchannels < 1 || spec.nchannels > most_channels)
         source.fail("the file has " + std::to_string(spec.nchannels) + " channels; allowed are 1 to 64");
     if (spec.depth > 1 || spec.deep) source.fail("the image is volumetric or deep; allowed is a flat image");
@@ -72,9 +70,6 @@ void check_placement(const Source& source, const OIIO::ImageSpec& spec) {
         source.fail("the data window (" + std::to_string(spec.width) + " x " + std::to_string(spec.height) + " at " +
                     std::to_string(spec.x) + ", " + std::to_string(spec.y) +
                     ") is not the display window; allowed is an image that fills it");
-    const std::string texture = spec.get_string_attribute("textureformat");
-    if (texture == "CubeFace Environment")
-        source.fail("the file is a cube map (EXR envmap attribute); allowed is a lat-long map (layout latlong)");
 }
 
 // Which channel gives red, green and blue.
@@ -147,7 +142,8 @@ bool read_rows(const Source& source, const OIIO::ImageSpec& spec, int begin, int
                                         rows.data());
 }
 
-void read_pixels(const Source& source, const OIIO::ImageSpec& spec, Progress& progress, ImageFile& image) {
+void read_pixels(const Source& source, const OIIO::ImageSpec& spec, ProgressRange range, Progress& progress,
+                 ImageFile& image) {
     const std::array<int, 3> channels = choose_channels(spec, image);
     const int unit = spec.tile_height > 0 ? spec.tile_height : 16;
     const auto wanted = static_cast<int>(pixels_per_piece / spec.width);
@@ -165,13 +161,14 @@ void read_pixels(const Source& source, const OIIO::ImageSpec& spec, Progress& pr
         const float* value = rows.data();
         for (std::size_t i = 0; i < std::size_t(end - begin) * spec.width; ++i, value += spec.nchannels)
             pixel[i] = {value[channels[0]], value[channels[1]], value[channels[2]]};
-        progress.report("read_environment", 0.9 * end / spec.height);
+        progress.report("read_environment", range.begin + (range.end - range.begin) * end / spec.height);
     }
 }
 
 }  // namespace
 
-ImageFile read_image_file(const std::filesystem::path& file, Progress& progress) try {
+ImageFile read_image_file(const std::filesystem::path& file, const SizeCheck& check, ProgressRange range,
+                          Progress& progress) try {
     Source source{file, nullptr};
     if (!std::filesystem::is_regular_file(file)) source.fail("there is no such file");
     const std::string format = sniff(source);
@@ -180,16 +177,17 @@ ImageFile read_image_file(const std::filesystem::path& file, Progress& progress)
     OIIO::ImageSpec spec;
     if (!source.input->open(file.string(), spec)) source.fail("not a readable image: " + source.input->geterror());
 
-    check_size(source, spec, format);
+    check_size(source, spec, format, check);
     check_placement(source, spec);
     ImageFile image;
     image.width = spec.width;
     image.height = spec.height;
     image.format = format;
     image.integer = !spec.format.is_floating_point();
+    image.openexr_cube = spec.get_string_attribute("textureformat") == "CubeFace Environment";
     image.primaries = name_primaries(spec);
     add_notes(spec, *source.input, image);
-    read_pixels(source, spec, progress, image);
+    read_pixels(source, spec, range, progress, image);
     return image;
 } catch (const std::bad_alloc&) {
     throw Error(ErrorKind::out_of_resources, file.string() + ": not enough memory for the image");

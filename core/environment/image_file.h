@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,15 +18,26 @@ struct ImageFile {
     std::string format;         ///< "hdr", "openexr", "tiff", "pnm" (PFM), "png"
     std::string primaries;      ///< from the file's chromaticities, "unspecified" without
     bool integer = false;       ///< the file holds integers
+    bool openexr_cube = false;  ///< EXR's envmap attribute says cube: OpenEXR's own orientation of the faces
     std::vector<std::string> warnings;
 };
 
-/// Reads a 2:1 image in pieces of about a million pixels, between which `progress` is told (stage
-/// read_environment, 0 to 0.9) and may cancel. The format is told from the file's first bytes, not its name; the
-/// declared size is checked against 16384 x 8192, the shape and, where compression has a known limit, the file's length
-/// before any memory is taken. Channels R, G, B are found by name (in any layer), otherwise the first three are taken;
+/// Judges a declared size before any memory is taken: returns what is wrong with it ("the size is ...; allowed is
+/// ..."), empty if nothing.
+using SizeCheck = std::function<std::string(int width, int height)>;
+
+/// The part of the stage read_environment that reading one image is.
+struct ProgressRange {
+    double begin = 0, end = 0.9;
+};
+
+/// Reads an image in pieces of about a million pixels, between which `progress` is told (stage read_environment, within
+/// `range`) and may cancel. The format is told from the file's first bytes, not its name; the declared size is given to
+/// `check` and, where compression has a known limit, compared with the file's length before any memory is taken.
+/// `check` bounds the memory. Channels R, G, B are found by name (in any layer), otherwise the first three are taken;
 /// one channel is grey. Throws Error(bad_input) with file, place, what was found and what is allowed;
 /// Error(out_of_resources); Error(cancelled).
-ImageFile read_image_file(const std::filesystem::path& file, Progress& progress);
+ImageFile read_image_file(const std::filesystem::path& file, const SizeCheck& check, ProgressRange range,
+                          Progress& progress);
 
 }  // namespace hairbake

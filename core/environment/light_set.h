@@ -21,11 +21,13 @@ struct LightSet {
 
 /// Gathers the texels of `map` in cells and puts one light at each cell's flux centroid (weighted with the sum of the
 /// channels), which keeps flux and first moment: a kernel is then wrong by its curvature times the spread inside a cell
-/// only. Cells are those of 2 * `resolution` latitude bands, each cut into 4 * resolution * sin(theta) pieces: nearly
-/// square, about as many as a cube of resolution^2 x 6 (0.85 times), but aligned with the map's rows, so that a row is
-/// cut into runs once and no texel needs a division. (The design has a cube; this is faster, its cells more even, and a
-/// band belongs to one thread.) Cells without light are left out; no cell is smaller than a texel, so a small map
-/// becomes its own texels except near the poles. Exact solid angles, double sums; the same bytes for any thread count.
+/// only. Cells of a lat-long map are those of 2 * `resolution` latitude bands, each cut into 4 * resolution *
+/// sin(theta) pieces: nearly square, about as many as a cube of resolution^2 x 6 (0.85 times), but aligned with the
+/// map's rows, so that a row is cut into runs once and no texel needs a division. (The design has a cube; this is
+/// faster, its cells more even, and a band belongs to one thread.) Cells of a cube map are resolution^2 rectangles of a
+/// face, of equal angle along its edges. Cells without light are left out; no cell is smaller than a texel, so a small
+/// map becomes its own texels (a lat-long one except near the poles). Exact solid angles, double sums; the same bytes
+/// for any thread count.
 /// `resolution` in [1, 4096]. Throws Error(bad_input) for a negative, infinite or NaN cell, Error(cancelled).
 LightSet make_light_set(const EnvironmentMap& map, int resolution, const Progress& progress);
 

@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "core/base/parallel.h"
-#include "core/environment/latlong.h"
 
 namespace hairbake {
 namespace {
@@ -40,23 +39,24 @@ RowFacts inspect(const Vec3f* row, int width) {
     return facts;
 }
 
-void clamp_row(Vec3f* row, int width, float largest, double solid_angle, RadianceRepairs& repairs) {
+void clamp_row(Vec3f* row, const TexelSolidAngles& solid_angles, int y, float largest, RadianceRepairs& repairs) {
+    const double* share = solid_angles.texels_of_row(y);
     double removed = 0, total = 0;
-    for (int x = 0; x < width; ++x)
+    for (int x = 0; x < solid_angles.width; ++x)
         for (int channel = 0; channel < 3; ++channel) {
             float& value = row[x][channel];
             if (!valid(value)) {
-                if (value < 0 && std::isfinite(value)) removed -= value;
+                if (value < 0 && std::isfinite(value)) removed -= value * share[x];
                 value = value > 0 ? largest : 0;  // +infinity; all others are 0
             }
-            total += value;
+            total += value * share[x];
         }
-    repairs.energy_removed += removed * solid_angle;
-    repairs.energy_total += total * solid_angle;
+    repairs.energy_removed += removed * solid_angles.row[y];
+    repairs.energy_total += total * solid_angles.row[y];
 }
 
-void refuse(const EnvironmentMap& map, int x, int y, const std::string& where) {
-    const Vec3f pixel = map.pixels[std::size_t(y) * map.width + x];
+void refuse(const EnvironmentMap& map, std::size_t index, const std::string& where) {
+    const Vec3f pixel = map.pixels[index];
     int channel = 0;
     while (valid(pixel[channel])) ++channel;
     std::ostringstream text;
@@ -64,7 +64,7 @@ void refuse(const EnvironmentMap& map, int x, int y, const std::string& where) {
          << (channel == 0   ? "red"
              : channel == 1 ? "green"
                             : "blue")
-         << " radiance at pixel (" << x << ", " << y << ") is " << pixel[channel]
+         << " radiance at " << place_of_texel(map, index) << " is " << pixel[channel]
          << "; allowed is finite and not negative. irradiance.invalid_radiance = clamp repairs and counts such pixels";
     throw Error(ErrorKind::bad_input, text.str(), "irradiance.invalid_radiance");
 }
@@ -88,14 +88,14 @@ void repair_radiance(EnvironmentMap& map, InvalidRadiance policy, const std::str
     float largest = 0;
     for (int y = 0; y < map.height; ++y) {
         if (facts[y].first_invalid >= 0 && policy == InvalidRadiance::reject)
-            refuse(map, facts[y].first_invalid, y, where);
+            refuse(map, std::size_t(y) * map.width + facts[y].first_invalid, where);
         largest = std::max(largest, facts[y].largest_finite);
     }
-    const LatLongRows rows = latlong_rows(map.width, map.height);
+    const TexelSolidAngles solid_angles = texel_solid_angles(map);
     parallel_for(map.height, 16, [&](std::size_t begin, std::size_t end) {
         progress.check();
         for (std::size_t y = begin; y < end; ++y)
-            clamp_row(map.pixels.data() + y * map.width, map.width, largest, rows.solid_angle[y], facts[y].repairs);
+            clamp_row(map.pixels.data() + y * map.width, solid_angles, int(y), largest, facts[y].repairs);
     });
     map.repairs = {};
     for (const RowFacts& row : facts) add(map.repairs, row.repairs);

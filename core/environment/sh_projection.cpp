@@ -4,8 +4,9 @@
 #include <numbers>
 
 #include "core/base/parallel.h"
+#include "core/base/spherical_harmonics.h"
+#include "core/environment/cube_sh_projection.h"
 #include "core/environment/latlong.h"
-#include "core/environment/spherical_harmonics.h"
 
 namespace hairbake {
 
@@ -111,6 +112,7 @@ RowSums sum_rows(const EnvironmentMap& map, int bands, const Progress& progress)
 }  // namespace
 
 std::vector<Vec3d> project_sh(const EnvironmentMap& map, int bands, const Progress& progress) {
+    if (map.shape == EnvironmentShape::cube) return project_cube_sh(map, bands, progress);
     const RowSums sums = sum_rows(map, bands, progress);
     const LatLongRows rows = latlong_rows(map.width, map.height);
     const ShBasis basis(bands);

@@ -22,6 +22,8 @@ struct HairModel {
     std::vector<float> transparency;          ///< [V] or empty; 0 opaque .. 1 clear
     std::vector<Vec3f> colors;                ///< [V] or empty; linear RGB
 
+    std::string format = "HAIR";  ///< of the file: "HAIR", "TressFX 3.0" or "TressFX 4.0"
+
     bool has_segments_array = true;  ///< whether the file gives a segment count for each strand
     std::uint32_t default_segments = 0;
     float default_thickness = 0;

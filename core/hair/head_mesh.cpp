@@ -14,13 +14,13 @@
 namespace hairbake {
 namespace {
 
-void add_vertex(HeadMesh& mesh, const Vec3d& direction) {
+void add_vertex(TriangleMesh& mesh, const Vec3d& direction) {
     mesh.positions.emplace_back(direction * head_radius(direction));
     mesh.normals.emplace_back(head_normal(direction));
 }
 
 /// Two poles, and between them rings - 1 circles of `columns` vertices.
-void add_vertices(HeadMesh& mesh, int rings, int columns) {
+void add_vertices(TriangleMesh& mesh, int rings, int columns) {
     add_vertex(mesh, {0, 1, 0});
     for (int ring = 1; ring < rings; ++ring) {
         const double polar = std::numbers::pi * ring / rings;
@@ -33,7 +33,7 @@ void add_vertices(HeadMesh& mesh, int rings, int columns) {
     add_vertex(mesh, {0, -1, 0});
 }
 
-void add_triangles(HeadMesh& mesh, int rings, int columns) {
+void add_triangles(TriangleMesh& mesh, int rings, int columns) {
     const auto vertex = [&](int ring, int column) {
         return static_cast<std::uint32_t>(1 + (ring - 1) * columns + column % columns);
     };
@@ -58,17 +58,17 @@ std::string line(const char* key, const Vec3f& v) {
 
 }  // namespace
 
-HeadMesh make_head_mesh(int rings) {
+TriangleMesh make_head_mesh(int rings) {
     if (rings < 4 || rings > 2048)
         throw Error(ErrorKind::usage, "a head mesh of " + std::to_string(rings) + " rings; allowed are 4 to 2048",
                     "rings");
-    HeadMesh mesh;
+    TriangleMesh mesh;
     add_vertices(mesh, rings, 2 * rings);
     add_triangles(mesh, rings, 2 * rings);
     return mesh;
 }
 
-void write_obj(const HeadMesh& mesh, const std::filesystem::path& file) {
+void write_obj(const TriangleMesh& mesh, const std::filesystem::path& file) {
     std::ofstream stream(file, std::ios::binary | std::ios::trunc);
     stream << "# hairbake sample head, unit cm, Y up, face towards +Z\n";
     for (const Vec3f& p : mesh.positions) stream << line("v", p);

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <span>
 
 #include "core/environment/light_set.h"
 #include "core/environment/sh_projection.h"
-#include "core/environment/spherical_harmonics.h"
+#include "core/environment/sh_rotation.h"
 #include "core/fiber/kajiya_kay.h"
+#include "core/irradiance/added_lights.h"
 #include "core/irradiance/interpolation_bound.h"
 #include "core/irradiance/kernel_sum.h"
 #include "core/irradiance/sh_maps.h"
@@ -47,6 +49,17 @@ void store_texel(const Vec3f* sums, std::size_t texel, IrradianceMaps& maps) {
     for (std::size_t m = 0; m <= last; ++m) maps.specular[m][texel] = maps.specular[last - m][opposite] = sums[1 + m];
 }
 
+// The largest sum of an interpolation row over the tangents; the directional lights' share is summed by itself.
+Vec3d largest_bound(std::span<const Vec3f> sums, std::span<const Vec3f> added, int rows, int first_bound) {
+    Vec3d bound;
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+        if (int(i % rows) < first_bound) continue;
+        const Vec3d sum = added.empty() ? Vec3d(sums[i]) : Vec3d(sums[i]) + Vec3d(added[i]);
+        for (int channel = 0; channel < 3; ++channel) bound[channel] = std::max(bound[channel], sum[channel]);
+    }
+    return bound;
+}
+
 // Sums over the lights for the tangents of faces +X, +Y and +Z, and the bound of interpolation by the way: cubes
 // coarser than 16 would make it needlessly loose and have it computed by itself.
 void bake_exact_maps(const LightSet& lights, const IrradianceSettings& settings, Progress& progress,
@@ -58,20 +71,21 @@ void bake_exact_maps(const LightSet& lights, const IrradianceSettings& settings,
     maps.diffuse.assign(cube_faces * texels, {});
     maps.specular.assign(count, CubeTexels(cube_faces * texels));
     std::vector<Vec3d> tangents(texels);
+    const LightSet added = with_directional_lights({}, settings.lights);
     Vec3d bound;
     for (const int face : {0, 2, 4}) {
         for (std::size_t i = 0; i < texels; ++i) tangents[i] = cube_texel_direction(n, face, int(i / n), int(i % n));
         const std::vector<Vec3f> sums = sum_kernels(lights, tangents, table, progress);
-        for (std::size_t i = 0; i < texels; ++i) {
-            const Vec3f* row = sums.data() + i * table.rows();
-            store_texel(row, face * texels + i, maps);
-            for (int k = 1 + count; k < table.rows(); ++k)
-                for (int channel = 0; channel < 3; ++channel)
-                    bound[channel] = std::max(bound[channel], double(row[k][channel]));
-        }
+        std::vector<Vec3f> added_sums;
+        if (added.size() > 0) added_sums = sum_kernels(added, tangents, table, progress);
+        for (std::size_t i = 0; i < texels; ++i) store_texel(sums.data() + i * table.rows(), face * texels + i, maps);
+        const Vec3d here = largest_bound(sums, added_sums, table.rows(), 1 + count);
+        for (int channel = 0; channel < 3; ++channel) bound[channel] = std::max(bound[channel], here[channel]);
         progress.report("irradiance", 0.2 + 0.2 * (face / 2 + 1));
     }
-    maps.interpolation_bound = n >= 16 ? bound : interpolation_bound(lights, settings.exponent, count, progress);
+    maps.interpolation_bound = n >= 16 ? bound
+                                       : interpolation_bound(with_directional_lights(lights, settings.lights),
+                                                             settings.exponent, count, progress);
 }
 
 void measure(const CubeTexels& texels, const std::vector<double>& solid_angles, MapStatistics& statistics) {
@@ -82,7 +96,7 @@ void measure(const CubeTexels& texels, const std::vector<double>& solid_angles, 
         if (!is_finite(texels[i]))
             throw Error(ErrorKind::bad_input,
                         "the environment is so bright that a map leaves the range of single precision (3.4e38); lower "
-                        "irradiance.exposure_stops",
+                        "irradiance.exposure_stops or irradiance.lights",
                         "irradiance.exposure_stops");
         for (int channel = 0; channel < 3; ++channel) {
             statistics.minimum[channel] = std::min(statistics.minimum[channel], texels[i][channel]);
@@ -152,6 +166,15 @@ void validate(const IrradianceSettings& s) {
     for (const auto& [bands, name] : {std::pair{s.sh_bands_diffuse, "diffuse"}, {s.sh_bands_specular, "specular"}})
         expect(!bands || in(*bands, 1, 128), std::string("sh_bands.") + name, std::to_string(bands.value_or(0)),
                "1 to 128, or auto");
+    expect(s.lights.size() <= 64, "lights", std::to_string(s.lights.size()) + " lights", "at most 64");
+    for (const DirectionalLight& light : s.lights) {
+        const Vec3d& e = light.irradiance;
+        const double square = dot(light.direction, light.direction);
+        expect(square > 0 && std::isfinite(square), "lights", "of a direction without length",
+               "a direction towards the light");
+        expect(is_finite(e) && e.x >= 0 && e.y >= 0 && e.z >= 0, "lights", "of negative or infinite irradiance",
+               "finite and not negative");
+    }
 }
 
 IrradianceMaps bake_irradiance(const EnvironmentMap& environment, const IrradianceSettings& settings,
@@ -172,9 +195,11 @@ IrradianceMaps bake_irradiance(const EnvironmentMap& environment, const Irradian
         maps.environment_sh =
             rotate_sh(project_sh(environment, reported_bands, progress), reported_bands, map_to_world(environment));
     } else {
-        maps.interpolation_bound = interpolation_bound(lights, settings.exponent, settings.specular_maps, progress);
+        maps.interpolation_bound = interpolation_bound(with_directional_lights(lights, settings.lights),
+                                                       settings.exponent, settings.specular_maps, progress);
         bake_sh_maps(environment, settings, reported_bands, progress, maps);
     }
+    add_directional_lights(settings.lights, progress, maps);
     measure_all(maps);
     add_warnings(settings, maps);
     progress.report("irradiance", 1);

@@ -27,15 +27,16 @@ struct IrradianceSettings {
     IrradianceMethod method = IrradianceMethod::exact;
     std::optional<int> sh_bands_diffuse;  ///< 1 to 128 bands (l = 0 .. bands - 1); empty: auto from sh_error
     std::optional<int> sh_bands_specular;
-    double sh_error = 0.01;      ///< target of auto: RMS over the largest value of all maps, (0, 1]
-    bool clamp_negative = true;  ///< sh only: negative texels become 0, their mass is reported
-    std::vector<DirectionalLight> lights;  ///< added analytically with the exact kernel, at most 64
+    double sh_error = 0.01;                ///< target of auto: RMS over the largest value of all maps, (0, 1]
+    bool clamp_negative = true;            ///< sh only: negative texels become 0, their mass is reported
+    std::vector<DirectionalLight> lights;  ///< at most 64; both methods add them to the maps with the exact kernel
 };
 
 struct MapStatistics {
     Vec3d mean;  ///< weighted by texel solid angle
     Vec3f minimum, maximum;
-    double clamped_negative_mass = 0;  ///< sum of |negative| * texel solid angle over channels, before clamping
+    double clamped_negative_mass = 0;  ///< sum of |negative| * texel solid angle over channels, before clamping and
+                                       ///< before lights are added
 };
 
 /// Everything the irradiance stage gives. Values are irradiance-like: radiance times steradian, Kd and Ks not applied.
@@ -47,8 +48,9 @@ struct IrradianceMaps {
     MapStatistics diffuse_statistics;
     std::vector<MapStatistics> specular_statistics;
 
-    /// Real SH coefficients of the environment in the world frame, [bands * bands] in the order l*l + l + m of spec
-    /// section 0. `exact` gives 8 bands, which keeps it cheap; `sh` as many as it used, 8 to 32.
+    /// Real SH coefficients of the environment alone (without `lights`, which no few bands can hold) in the world
+    /// frame, [bands * bands] in the order l*l + l + m of spec section 0. `exact` gives 8 bands, which keeps it cheap;
+    /// `sh` as many as it used, 8 to 32.
     std::vector<Vec3d> environment_sh;
     int environment_sh_bands = 0;
 
@@ -58,8 +60,8 @@ struct IrradianceMaps {
     Vec3d interpolation_bound;
     double interpolation_bound_relative = 0;
 
-    /// sh only: bands used and predicted truncation error (RMS over the largest value of all maps;
-    /// sh_maps.h says how). Zero for exact.
+    /// sh only: bands used and predicted truncation error (RMS over the largest value of all maps before `lights`
+    /// are added, which have no such error; sh_maps.h says how). Zero for exact.
     int sh_bands_diffuse = 0, sh_bands_specular = 0;
     double predicted_error_diffuse = 0, predicted_error_specular = 0;
 

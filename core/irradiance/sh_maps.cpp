@@ -5,9 +5,10 @@
 #include <numbers>
 
 #include "core/base/parallel.h"
+#include "core/base/spherical_harmonics.h"
 #include "core/environment/cube_map.h"
 #include "core/environment/sh_projection.h"
-#include "core/environment/spherical_harmonics.h"
+#include "core/environment/sh_rotation.h"
 #include "core/fiber/kajiya_kay.h"
 
 namespace hairbake {

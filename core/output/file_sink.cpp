@@ -54,7 +54,7 @@ WrittenFile FileSink::finish() {
     const int closed = ::close(descriptor_);
     descriptor_ = -1;
     if (closed != 0) throw_system_error(file_, errno);
-    return {file_.filename().string(), digest_.hex(), bytes_, {}, {}};
+    return {file_.filename().string(), digest_.hex(), bytes_, {}, {}, {}};
 }
 
 }  // namespace hairbake

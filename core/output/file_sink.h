@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -20,6 +21,7 @@ struct WrittenFile {
     std::uint64_t bytes = 0;
     std::vector<std::size_t> shape;  ///< of arrays and images, rows first; else empty
     std::string content;             ///< one line for people
+    std::optional<double> scale{};   ///< of half floats of radiance: the value is what is stored times this
 };
 
 /// Writes one new file. Not thread-safe. A full disk, a quota or a size limit is Error(out_of_resources); any other

@@ -3,16 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "core/base/vec.h"
+#include "core/output/map_metadata.h"
 
 namespace hairbake {
-
-/// Text attributes of an image file, in order. Neither dates nor paths belong here: same request, same bytes.
-using Metadata = std::vector<std::pair<std::string, std::string>>;
 
 /// OpenEXR: float32 RGB, ZIP compressed, scanlines. `pixels` is [height * width], rows from the top.
 /// Throws Error(out_of_resources) or Error(internal) with OpenImageIO's words.

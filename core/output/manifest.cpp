@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "core/base/error.h"
-#include "core/output/map_files.h"
+#include "core/output/map_metadata.h"
 #include "core/output/versions.h"
 #include "core/request_json.h"
 #include "core/request_keys.h"
@@ -45,20 +45,34 @@ Json hair_input(const BakeResult& result) {
 
 Json environment_input(const BakeResult& result) {
     const EnvironmentMap& map = *result.environment;
-    return {{"sha256", result.environment_digest},
-            {"width", map.width},
-            {"height", map.height},
-            {"format", map.source_format},
-            {"layout", map.layout},
-            {"latlong", std::string(name_of(map.latlong))},
-            {"primaries", map.primaries},
-            {"low_dynamic_range", map.low_dynamic_range},
-            {"energy", map.repairs.energy_total}};
+    Json block{{"sha256", result.environment_digest}};
+    if (map.shape == EnvironmentShape::cube)
+        block["face_size"] = map.width;
+    else
+        block.update({{"width", map.width}, {"height", map.height}});
+    block["format"] = map.source_format;
+    block["layout"] = map.layout;
+    if (map.shape == EnvironmentShape::latlong) block["latlong"] = std::string(name_of(map.latlong));
+    block["primaries"] = map.primaries;
+    block["low_dynamic_range"] = map.low_dynamic_range;
+    block["energy"] = map.repairs.energy_total;
+    return block;
+}
+
+Json occluder_input(const BakeResult& result) {
+    const MeshTopology& topology = result.occluder_topology;
+    return {{"sha256", result.hair_inputs.occluder},
+            {"positions", result.occluder->positions.size()},
+            {"triangles", result.occluder->triangles.size()},
+            {"closed", topology.closed},
+            {"open_edges", topology.open_edges},
+            {"irregular_edges", topology.irregular_edges}};
 }
 
 Json inputs(const BakeResult& result) {
     Json block = Json::object();
     if (result.transmittance) block["hair"] = hair_input(result);
+    if (result.occluder) block["occluder"] = occluder_input(result);
     if (result.environment) block["environment"] = environment_input(result);
     return block;
 }
@@ -119,6 +133,7 @@ Json conventions() {
             {"theta_prime", "from the tangent; map m of M + 1 is for m * 180 / M degrees"},
             {"cube_faces", "+X -X +Y -Y +Z -Z, OpenGL orientation, rows from the top"},
             {"latlong", "files are gltf: row 0 is +Y, centre column +X, right of it +Z"},
+            {"half_floats", "the value is what is stored times the file's scale; only level 0 is for tangents"},
             {"vertices", "the hair file's point order"},
             {"units", "maps: radiance times steradian, Kd and Ks not applied; transmittance: 0 to 1"}};
 }
@@ -148,6 +163,7 @@ Json file_list(const std::vector<WrittenFile>& files) {
         Json entry{{"name", file.name}, {"sha256", file.sha256}, {"bytes", file.bytes}};
         if (!file.shape.empty()) entry["shape"] = file.shape;
         entry["content"] = file.content;
+        if (file.scale) entry["scale"] = *file.scale;
         list.push_back(entry);
     }
     return list;

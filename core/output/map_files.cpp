@@ -1,36 +1,14 @@
 #include "core/output/map_files.h"
 
-#include <algorithm>
 #include <cstdio>
 
 #include "core/output/image_file.h"
 #include "core/output/latlong_picture.h"
+#include "core/output/map_metadata.h"
 #include "core/output/npy.h"
 
 namespace hairbake {
 namespace {
-
-std::string text(double value) {
-    char buffer[40];
-    std::snprintf(buffer, sizeof buffer, "%.17g", value);
-    return buffer;
-}
-
-/// "specular_07", with as many digits as the last map needs, two at least.
-std::string specular_name(const IrradianceMaps& maps, std::size_t m) {
-    const std::string last = std::to_string(maps.specular.size() - 1);
-    std::string number = std::to_string(m);
-    number.insert(0, std::max<std::size_t>(2, last.size()) - number.size(), '0');
-    return "specular_" + number;
-}
-
-Metadata cube_metadata(const IrradianceMaps& maps, const std::string& map) {
-    return {{"hairbake:map", map},
-            {"hairbake:model", "kajiya-kay"},
-            {"hairbake:exponent", text(maps.exponent)},
-            {"hairbake:units", "radiance times steradian; Kd and Ks are not applied"},
-            {"hairbake:frame", "right-handed, Y up; the texel's direction is the strand's tangent, root to tip"}};
-}
 
 WrittenFile write_exr(const std::filesystem::path& file, const std::vector<Vec3f>& pixels, int width, int height,
                       const Metadata& metadata, const std::string& content) {
@@ -59,10 +37,6 @@ void write_one_map(const IrradianceMaps& maps, const CubeTexels& cube, const std
 
 }  // namespace
 
-double theta_prime_degrees(const IrradianceMaps& maps, std::size_t m) {
-    return 180.0 * static_cast<double>(m) / static_cast<double>(maps.specular.size() - 1);
-}
-
 std::vector<WrittenFile> write_map_npy(const IrradianceMaps& maps, const std::filesystem::path& folder) {
     const auto n = static_cast<std::size_t>(maps.face_size);
     FileSink diffuse(folder / "diffuse.npy");
@@ -86,11 +60,11 @@ std::vector<WrittenFile> write_map_npy(const IrradianceMaps& maps, const std::fi
 std::vector<WrittenFile> write_map_exr(const IrradianceMaps& maps, const std::filesystem::path& folder,
                                        Progress& progress) {
     std::vector<WrittenFile> files;
-    write_one_map(maps, maps.diffuse, folder, "diffuse", cube_metadata(maps, "diffuse"), files);
+    write_one_map(maps, maps.diffuse, folder, "diffuse", map_metadata(maps, "diffuse"), files);
     for (std::size_t m = 0; m < maps.specular.size(); ++m) {
         progress.check();
-        Metadata metadata = cube_metadata(maps, "specular " + std::to_string(m));
-        metadata.emplace_back("hairbake:thetaPrimeDeg", text(theta_prime_degrees(maps, m)));
+        Metadata metadata = map_metadata(maps, "specular " + std::to_string(m));
+        metadata.emplace_back("hairbake:thetaPrimeDeg", number_text(theta_prime_degrees(maps, m)));
         write_one_map(maps, maps.specular[m], folder, specular_name(maps, m), metadata, files);
     }
     return files;

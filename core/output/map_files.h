@@ -11,9 +11,6 @@
 
 namespace hairbake {
 
-/// theta'_m in degrees: m * 180 / M, for m = 0 .. M.
-double theta_prime_degrees(const IrradianceMaps& maps, std::size_t m);
-
 /// diffuse.npy [6, n, n, 3] and specular.npy [M + 1, 6, n, n, 3]: face, row, column, RGB.
 std::vector<WrittenFile> write_map_npy(const IrradianceMaps& maps, const std::filesystem::path& folder);
 

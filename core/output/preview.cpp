@@ -8,7 +8,7 @@
 #include "core/output/hair_picture.h"
 #include "core/output/image_file.h"
 #include "core/output/latlong_picture.h"
-#include "core/output/map_files.h"
+#include "core/output/map_metadata.h"
 #include "core/output/tone.h"
 #include "core/output/versions.h"
 
@@ -174,7 +174,9 @@ void draw_diffuse(Sheet& sheet, const BakeResult& result, int top) {
         format("cube faces of %d x %d texels", maps.face_size, maps.face_size),
         exact ? "exact sum over the environment's pixels"
               : format("SH with %d bands diffuse, %d specular", maps.sh_bands_diffuse, maps.sh_bands_specular),
-        format("environment %d x %d, %s", map.width, map.height, map.source_format.c_str())};
+        map.shape == EnvironmentShape::cube
+            ? format("environment %d x %d x 6, %s", map.width, map.width, map.source_format.c_str())
+            : format("environment %d x %d, %s", map.width, map.height, map.source_format.c_str())};
     int y = top + 54;
     for (const std::string& words : lines) {
         sheet.text(left, y, words, 15, dim);

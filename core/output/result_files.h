@@ -10,9 +10,13 @@
 
 namespace hairbake {
 
+/// Throws Error(bad_input) when one of the request's outputs cannot hold result.hair. Takes no time: to be asked before
+/// the bake.
+void check_outputs(const BakeResult& result);
+
 /// Writes everything but the manifest into `folder`, which is empty: what request.outputs names of the stages that ran,
 /// environment_sh.json and preview.png. Adds what went less than well to result.warnings. Throws Error(cancelled)
-/// between files, and what FileSink throws.
+/// between files, and what FileSink and the writers throw.
 std::vector<WrittenFile> write_files(BakeResult& result, const std::filesystem::path& folder, Progress& progress);
 
 }  // namespace hairbake

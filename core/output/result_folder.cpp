@@ -1,11 +1,13 @@
 #include "core/output/result_folder.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <system_error>
 
 #include "core/base/error.h"
@@ -41,6 +43,29 @@ bool move(const fs::path& from, const fs::path& to, unsigned flags) {
     return ::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), flags) == 0;
 }
 
+/// ".NAME.hairbake-HOST-": what the staging folders of `path` begin with, on this machine.
+std::string staging_prefix(const fs::path& path) {
+    char host[256] = "";
+    ::gethostname(host, sizeof host - 1);
+    return "." + path.filename().string() + ".hairbake-" + host + "-";
+}
+
+/// Removes staging folders that processes of this machine left when they were killed. Those of other machines that
+/// share the file system cannot be judged from here, and stay.
+void collect_leftovers(const fs::path& path) {
+    const std::string prefix = staging_prefix(path);
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(path.parent_path(), error)) {
+        const std::string name = entry.path().filename().string();
+        if (!name.starts_with(prefix)) continue;
+        int process = 0;
+        const char* const end = name.data() + name.size();
+        const auto [rest, problem] = std::from_chars(name.data() + prefix.size(), end, process);
+        const bool ours = problem == std::errc() && process > 0 && (rest == end || *rest == '-');
+        if (ours && ::kill(process, 0) != 0 && errno == ESRCH) fs::remove_all(entry.path(), error);
+    }
+}
+
 }  // namespace
 
 void check_result_folder(const fs::path& folder) {
@@ -70,9 +95,7 @@ void check_result_folder(const fs::path& folder) {
 
 fs::path staging_folder(const fs::path& folder) {
     const fs::path path = resolved(folder);
-    std::string name = ".";
-    name.append(path.filename().string()).append(".hairbake-").append(std::to_string(::getpid()));
-    return path.parent_path() / name;
+    return path.parent_path() / (staging_prefix(path) + std::to_string(::getpid()));
 }
 
 void discard_staging(const fs::path& folder) noexcept {
@@ -95,6 +118,7 @@ ResultFolder::ResultFolder(const fs::path& folder) : folder_(resolved(folder)), 
     std::error_code error;
     fs::create_directories(parent, error);
     if (error) throw_system_error(parent, error.value());
+    collect_leftovers(folder_);
     fs::remove_all(staging_, error);  // of an earlier process with this number
     fs::create_directory(staging_, error);
     if (error) throw_system_error(staging_, error.value());

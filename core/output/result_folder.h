@@ -10,7 +10,7 @@ namespace hairbake {
 void check_result_folder(const std::filesystem::path& folder);
 
 /// Where the files of `folder` are written before they are moved into place: a hidden folder beside it, named after
-/// it and this process.
+/// it, this machine and this process.
 std::filesystem::path staging_folder(const std::filesystem::path& folder);
 
 /// Removes this process's staging folder for `folder`, if there is one; a ResultFolder at work on it fails to commit
@@ -20,7 +20,8 @@ void discard_staging(const std::filesystem::path& folder) noexcept;
 /// Write files to path(), then commit(). Without commit() nothing remains.
 class ResultFolder {
 public:
-    /// Checks `folder` and makes the staging folder (and missing parents). Throws Error(usage), Error(bad_input) when
+    /// Checks `folder`, makes the staging folder (and missing parents) and removes those that killed processes of this
+    /// machine left for the same folder. Throws Error(usage), Error(bad_input) when
     /// the place is not writable, Error(out_of_resources).
     explicit ResultFolder(const std::filesystem::path& folder);
     ~ResultFolder();

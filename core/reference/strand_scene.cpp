@@ -3,6 +3,7 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -26,29 +27,45 @@ float power_of_two_scale(const StrandGeometry& strands) {
 
 }  // namespace
 
-StrandScene::StrandScene(const StrandGeometry& strands, Progress& progress)
-    : strands_(strands), scale_(power_of_two_scale(strands)) {
+StrandScene::StrandScene(const StrandGeometry& strands, Progress& progress, const TriangleMesh* occluder)
+    : strands_(strands), occluder_(occluder), scale_(power_of_two_scale(strands)) {
     for (std::uint32_t i = 0; i < strands.vertex_count(); ++i)
         if (strands.segments[i] == Segment::solid) segment_of_.push_back(i);
     device_ = rtcNewDevice(nullptr);
     if (!device_) throw Error(ErrorKind::internal, "Embree gave no device");
-    scene_ = rtcNewScene(device_);
-    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
-    rtcSetSceneProgressMonitorFunction(scene_, go_on, &progress);
-    attach_curves();
-    rtcCommitScene(scene_);
+    build(progress);
     const RTCError error = rtcGetDeviceError(device_);
     if (error == RTC_ERROR_NONE) return;
-    rtcReleaseScene(scene_);
-    rtcReleaseDevice(device_);
+    release();
     progress.check();
     throw Error(error == RTC_ERROR_OUT_OF_MEMORY ? ErrorKind::out_of_resources : ErrorKind::internal,
                 "Embree could not build the strand scene (error " + std::to_string(error) + ")");
 }
 
-StrandScene::~StrandScene() {
+StrandScene::~StrandScene() { release(); }
+
+void StrandScene::release() {
+    if (occluder_scene_) rtcReleaseScene(occluder_scene_);
     rtcReleaseScene(scene_);
     rtcReleaseDevice(device_);
+}
+
+RTCSceneTy* StrandScene::new_scene(Progress& progress) {
+    const RTCScene scene = rtcNewScene(device_);
+    rtcSetSceneProgressMonitorFunction(scene, go_on, &progress);
+    return scene;
+}
+
+void StrandScene::build(Progress& progress) {
+    scene_ = new_scene(progress);
+    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+    attach_curves();
+    rtcCommitScene(scene_);
+    if (!occluder_) return;
+    occluder_scene_ = new_scene(progress);
+    rtcSetSceneFlags(occluder_scene_, RTC_SCENE_FLAG_ROBUST);  // no ray slips through between two triangles
+    attach_triangles();
+    rtcCommitScene(occluder_scene_);
 }
 
 void StrandScene::attach_curves() {
@@ -80,6 +97,23 @@ void StrandScene::attach_curves() {
         rtcAttachGeometryByID(scene_, curves, 0);
     }
     rtcReleaseGeometry(curves);
+}
+
+void StrandScene::attach_triangles() {
+    if (occluder_->triangles.empty()) return;
+    const RTCGeometry mesh = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* points = static_cast<Vec3f*>(rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                               sizeof(Vec3f), occluder_->positions.size()));
+    auto* indices = static_cast<std::array<std::uint32_t, 3>*>(rtcSetNewGeometryBuffer(
+        mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), occluder_->triangles.size()));
+    if (points && indices) {
+        std::transform(occluder_->positions.begin(), occluder_->positions.end(), points,
+                       [&](const Vec3f& p) { return p * scale_; });
+        std::copy(occluder_->triangles.begin(), occluder_->triangles.end(), indices);
+        rtcCommitGeometry(mesh);
+        rtcAttachGeometry(occluder_scene_, mesh);
+    }
+    rtcReleaseGeometry(mesh);
 }
 
 }  // namespace hairbake

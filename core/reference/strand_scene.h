@@ -5,6 +5,7 @@
 
 #include "core/base/progress.h"
 #include "core/hair/strand_geometry.h"
+#include "core/mesh/triangle_mesh.h"
 
 struct RTCDeviceTy;
 struct RTCSceneTy;
@@ -13,30 +14,40 @@ namespace hairbake {
 
 /// Solid segments as Embree round linear curves (cones with rounded joints, thickness as diameter); degenerate segments
 /// are left out. Primitive k of geometry 0 is segment segment_of(k). Embree sees the model scaled by scale(). Refers to
-/// `strands`, which must outlive it. Immutable after construction; may be traced from several threads.
+/// `strands` and `occluder`, which must outlive it. The occluder is an Embree scene of its own, as its rays start
+/// elsewhere (core/mesh/grounding.h). Immutable after construction; may be traced from several threads.
 class StrandScene {
 public:
     /// Throws Error(out_of_resources), Error(cancelled), Error(internal) with Embree's words.
-    StrandScene(const StrandGeometry& strands, Progress& progress);
+    StrandScene(const StrandGeometry& strands, Progress& progress, const TriangleMesh* occluder = nullptr);
     ~StrandScene();
     StrandScene(const StrandScene&) = delete;
     StrandScene& operator=(const StrandScene&) = delete;
 
     const StrandGeometry& strands() const { return strands_; }
     RTCSceneTy* scene() const { return scene_; }
+    /// Stops light completely; null for none.
+    const TriangleMesh* occluder() const { return occluder_; }
+    RTCSceneTy* occluder_scene() const { return occluder_scene_; }
     /// A power of two that makes the longest side of the bounds 1 to 2: Embree multiplies up to four lengths, which
     /// would leave the range of floats in a model of 1e-10 or 1e10 units.
     float scale() const { return scale_; }
     std::uint32_t segment_of(std::uint32_t primitive) const { return segment_of_[primitive]; }
 
 private:
+    void build(Progress& progress);
+    void release();
+    RTCSceneTy* new_scene(Progress& progress);
     void attach_curves();
+    void attach_triangles();
 
     const StrandGeometry& strands_;
+    const TriangleMesh* occluder_;
     float scale_ = 1;
     std::vector<std::uint32_t> segment_of_;
     RTCDeviceTy* device_ = nullptr;
     RTCSceneTy* scene_ = nullptr;
+    RTCSceneTy* occluder_scene_ = nullptr;
 };
 
 }  // namespace hairbake

@@ -14,8 +14,9 @@ namespace hairbake {
 /// Average over `directions` of the transmittance seen from each of `vertices` (indices of the strands' points): the
 /// factor (1 - opacity) once per strand crossing, not per segment or joint; the vertex's own adjacent segments, and
 /// those that a ray enters before it has left the vertex's own strand, are not counted (spec section 3, self
-/// exclusion). One value in [0, 1] per entry of `vertices`, in its order, the same for any thread count. Fastest when
-/// neighbouring entries are neighbours in space (packets of 16 share a direction).
+/// exclusion), and 0 where the scene's occluder is in the way (both its sides block; vertices on its surface look from
+/// where core/mesh/grounding.h says). One value in [0, 1] per entry of `vertices`, in its order, the same for any
+/// thread count. Fastest when neighbouring entries are neighbours in space (packets of 16 share a direction).
 std::vector<float> trace_transmittance(const StrandScene& scene, std::span<const std::uint32_t> vertices,
                                        std::span<const Vec3d> directions, Progress& progress);
 

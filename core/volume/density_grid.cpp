@@ -2,9 +2,13 @@
 
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
+#include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include "core/base/digest.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 
@@ -45,6 +49,28 @@ void place_in_model(const GridFrame& frame, openvdb::FloatGrid& grid) {
     grid.setTransform(transform);
 }
 
+/// What openvdb::io::File writes, to any stream: io::Stream would leave out the offsets by which readers of large files
+/// seek.
+class SeekableArchive : public openvdb::io::Archive {
+public:
+    void write(std::ostream& stream, const openvdb::GridBase::ConstPtr& grid) const {
+        Archive::write(stream, openvdb::GridCPtrVec{grid}, true);
+    }
+};
+
+/// Puts the digest of the contents in the place of the random UUID of the header, which serves to tell files apart.
+void replace_tag(std::string& bytes) {
+    constexpr std::size_t begin = 8 + 3 * 4 + 1, length = 36;  // behind the magic number, three versions and a flag
+    const auto dash = [&](std::size_t i) { return bytes.size() > begin + i && bytes[begin + i] == '-'; };
+    if (!dash(8) || !dash(13) || !dash(18) || !dash(23))
+        throw Error(ErrorKind::internal, "this version of OpenVDB has another file header than the one known");
+    std::fill_n(bytes.begin() + begin, length, '0');
+    const std::string digest = Digest().add(bytes).hex();
+    const std::string tag = digest.substr(0, 8) + '-' + digest.substr(8, 4) + '-' + digest.substr(12, 4) + '-' +
+                            digest.substr(16, 4) + '-' + digest.substr(20, 12);
+    bytes.replace(begin, length, tag);
+}
+
 }  // namespace
 
 DensityGrid::DensityGrid(const GridFrame& frame, const SortedStrands& sorted, const ExtinctionBricks& bricks)
@@ -69,14 +95,20 @@ std::uint64_t DensityGrid::occupied_voxels() const { return impl_->grid->activeV
 
 float DensityGrid::density(int i, int j, int k) const { return impl_->grid->tree().getValue(openvdb::Coord(i, j, k)); }
 
+std::string DensityGrid::encode() const {
+    std::ostringstream stream;
+    SeekableArchive().write(stream, impl_->grid);
+    std::string bytes = std::move(stream).str();
+    replace_tag(bytes);
+    return bytes;
+}
+
 void DensityGrid::write(const std::filesystem::path& file) const {
-    try {
-        openvdb::io::File out(file.string());
-        out.write({impl_->grid});
-        out.close();
-    } catch (const openvdb::Exception& error) {
-        throw Error(ErrorKind::out_of_resources, file.string() + ": could not be written: " + error.what());
-    }
+    const std::string bytes = encode();
+    std::ofstream out(file, std::ios::binary);
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    out.close();
+    if (!out) throw Error(ErrorKind::out_of_resources, file.string() + " could not be written");
 }
 
 }  // namespace hairbake

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "core/volume/extinction_bricks.h"
 #include "core/volume/grid_frame.h"
@@ -25,7 +26,10 @@ public:
     std::uint64_t occupied_voxels() const;
     /// Density of a voxel, 0 outside.
     float density(int i, int j, int k) const;
-    /// Writes a .vdb file. Throws Error(out_of_resources) when it cannot be written.
+    /// The bytes of a .vdb file. The same grid gives the same bytes: the random tag that OpenVDB puts into each file is
+    /// replaced by one made of the contents.
+    std::string encode() const;
+    /// Writes them to a file. Throws Error(out_of_resources) when it cannot be written.
     void write(const std::filesystem::path& file) const;
 
 private:

@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <vector>
 
 #include "core/base/error.h"
 
 namespace hairbake {
-namespace {
 
-/// 95th percentile of at most 65,536 widths taken at equal steps through the model.
 double typical_largest_width(const std::vector<float>& widths) {
     const std::size_t step = widths.size() / 65536 + 1;
     std::vector<float> sample;
@@ -19,8 +16,6 @@ double typical_largest_width(const std::vector<float>& widths) {
     std::nth_element(sample.begin(), sample.begin() + static_cast<std::ptrdiff_t>(rank), sample.end());
     return sample[rank];
 }
-
-}  // namespace
 
 GridFrame make_grid_frame(const StrandGeometry& strands, const TransmittanceSettings& settings,
                           bool* bounded_by_width) {

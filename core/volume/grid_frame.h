@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "core/base/vec.h"
 #include "core/hair/strand_geometry.h"
@@ -45,6 +46,9 @@ struct GridFrame {
     /// Position of voxel (i, j, k) inside its brick, as in an OpenVDB leaf: z fastest.
     static int voxel_in_brick(int i, int j, int k) { return (i & 7) << 6 | (j & 7) << 3 | (k & 7); }
 };
+
+/// 95th percentile of at most 65,536 widths (not empty) taken at equal steps through the model.
+double typical_largest_width(const std::vector<float>& widths);
 
 /// The grid that `settings` asks for around all strands, with a margin of one voxel. The mean field needs strands well
 /// thinner than a voxel: h = max(what was asked for, 2 * 95th percentile of the widths).

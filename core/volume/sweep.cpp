@@ -103,9 +103,10 @@ HWY_INLINE V depth_at(const RayPath& path, const float* depth, const float* slab
 
 /// Reads every slot of slice s before the slice is added to the rays.
 void read_slots(const SliceLayout& layout, int s, bool ascending, std::span<const RayPath> paths, float scale,
-                const SweepScratch& scratch, SweepSums& sums) {
+                std::span<const std::uint8_t> seen, const SweepScratch& scratch, SweepSums& sums) {
     const F d;
     const I di;
+    const hn::Rebind<std::uint8_t, I> d8;
     const auto scale_v = hn::Set(d, scale);
     const std::size_t end = layout.slot_begin[static_cast<std::size_t>(s) + 1];
     for (std::size_t i = layout.slot_begin[static_cast<std::size_t>(s)]; i < end; i += hn::Lanes(d)) {
@@ -119,7 +120,11 @@ void read_slots(const SliceLayout& layout, int s, bool ascending, std::span<cons
         for (std::size_t k = 0; k < paths.size(); ++k) {
             const auto depth =
                 depth_at(paths[k], scratch.depth[k].data(), scratch.slab[k].data(), u, v, along, inside, texel);
-            const auto t = hn::Exp(d, hn::Neg(depth));
+            auto t = hn::Exp(d, hn::Neg(depth));
+            if (!seen.empty()) {
+                const auto bits = hn::PromoteTo(di, hn::LoadU(d8, &seen[i]));
+                t = hn::IfThenElseZero(hn::RebindMask(d, hn::TestBit(bits, hn::Set(di, 1 << k))), t);
+            }
             t0 = hn::Add(t0, t);
             tx = hn::MulAdd(t, hn::Set(d, paths[k].direction.x), tx);
             ty = hn::MulAdd(t, hn::Set(d, paths[k].direction.y), ty);
@@ -136,8 +141,8 @@ void read_slots(const SliceLayout& layout, int s, bool ascending, std::span<cons
     }
 }
 
-void walk(const SliceLayout& layout, std::span<const RayPath> paths, bool ascending, float scale, SweepScratch& scratch,
-          SweepSums& sums) {
+void walk(const SliceLayout& layout, std::span<const RayPath> paths, bool ascending, float scale,
+          std::span<const std::uint8_t> seen, SweepScratch& scratch, SweepSums& sums) {
     for (int step = 0; step < layout.slices; ++step) {
         // Light comes from the upper end when the direction ascends along the axis.
         const int s = ascending ? layout.slices - 1 - step : step;
@@ -148,7 +153,7 @@ void walk(const SliceLayout& layout, std::span<const RayPath> paths, bool ascend
         for (std::size_t k = 0; k < paths.size(); ++k)
             if (scratch.slab[k].size() < at(end)) scratch.slab[k].resize(at(end));
         for (std::uint32_t tile = begin; tile < end; ++tile) fill_slab(layout, tile, at(tile), paths, scratch);
-        read_slots(layout, s, ascending, paths, scale, scratch, sums);
+        read_slots(layout, s, ascending, paths, scale, seen, scratch, sums);
         for (std::uint32_t tile = begin; tile < end; ++tile) add_slab(layout, tile, at(tile), s, paths, scratch);
     }
 }
@@ -191,16 +196,16 @@ float sweep_scale(int directions) {
     return static_cast<float>(1 << bits);
 }
 
-void sweep(const SliceLayout& layout, std::span<const Vec3d> directions, float scale, SweepScratch& scratch,
-           SweepSums& sums) {
+void sweep(const SliceLayout& layout, std::span<const Vec3d> directions, float scale,
+           std::span<const std::uint8_t> seen, SweepScratch& scratch, SweepSums& sums) {
     std::array<RayPath, kSweepLanes> paths;
     for (std::size_t k = 0; k < directions.size(); ++k) {
         paths[k] = make_path(layout, directions[k]);
         scratch.depth[k].assign(static_cast<std::size_t>(paths[k].stride) * static_cast<std::size_t>(paths[k].rows), 0);
     }
     HWY_DYNAMIC_DISPATCH(walk)
-    (layout, std::span<const RayPath>(paths.data(), directions.size()), directions[0][layout.axis] > 0, scale, scratch,
-     sums);
+    (layout, std::span<const RayPath>(paths.data(), directions.size()), directions[0][layout.axis] > 0, scale, seen,
+     scratch, sums);
 }
 
 }  // namespace hairbake

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "core/volume/density_grid.h"
 #include "core/volume/extinction_bricks.h"
 #include "core/volume/grid_frame.h"
+#include "core/volume/hair_shadow.h"
 #include "core/volume/near_field.h"
 #include "core/volume/slice_layout.h"
 #include "core/volume/strand_pieces.h"
@@ -79,18 +81,28 @@ private:
     std::vector<std::int32_t> values_;
 };
 
+/// The occluder as the slots of one axis see it.
+struct SlotShadow {
+    const HairShadow* hair;
+    OccluderShadow::Points points;
+};
+
 /// Sweeps all groups of one axis and adds what they bring. `swept` is told how many directions are done.
-void sweep_axis(const SliceLayout& layout, std::span<const std::vector<Vec3d>> groups, float scale, Progress& progress,
-                const std::function<void(std::size_t)>& swept, VertexSums& total) {
+void sweep_axis(const SliceLayout& layout, std::span<const std::vector<Vec3d>> groups, float scale,
+                const SlotShadow* shadow, Progress& progress, const std::function<void(std::size_t)>& swept,
+                VertexSums& total) {
     const std::size_t walks = std::min(groups.size(), kMostWalks);
     std::vector<SweepSums> sums(walks, SweepSums(0));
     std::atomic<std::size_t> next{0};
     parallel_for(walks, 1, [&](std::size_t w, std::size_t) {
         SweepScratch scratch;
+        OccluderShadow::Scratch raster;
+        std::vector<std::uint8_t> seen;
         for (std::size_t g = next++; g < groups.size(); g = next++) {
             progress.check();
             if (sums[w].slots == 0) sums[w] = SweepSums(layout.slot_vertex.size());
-            sweep(layout, groups[g], scale, scratch, sums[w]);
+            if (shadow) shadow->hair->occluder().look(shadow->points, groups[g], progress, raster, seen);
+            sweep(layout, groups[g], scale, seen, scratch, sums[w]);
             swept(groups[g].size());
         }
     });
@@ -99,7 +111,7 @@ void sweep_axis(const SliceLayout& layout, std::span<const std::vector<Vec3d>> g
 
 /// [V], in the order of SortedStrands.
 std::vector<AngularMean> sweep_all(const GridFrame& frame, const SortedStrands& sorted, const ExtinctionBricks& bricks,
-                                   std::span<const Vec3d> directions, Progress& progress) {
+                                   std::span<const Vec3d> directions, const HairShadow* shadow, Progress& progress) {
     const int count = static_cast<int>(directions.size());
     const float scale = sweep_scale(count);
     VertexSums total(sorted.vertices.size());
@@ -111,7 +123,9 @@ std::vector<AngularMean> sweep_all(const GridFrame& frame, const SortedStrands& 
         const auto swept = [&](std::size_t n) {
             progress.report("transmittance", 0.3 + 0.4 * static_cast<double>(done += n) / count);
         };
-        sweep_axis(layout, groups, scale, progress, swept, total);
+        std::optional<SlotShadow> slots;
+        if (shadow) slots = SlotShadow{shadow, shadow->points(layout, sorted)};
+        sweep_axis(layout, groups, scale, slots ? &*slots : nullptr, progress, swept, total);
     }
     return total.means(scale, count);
 }
@@ -141,7 +155,9 @@ Transmittance bake_transmittance_volume(const TransmittanceScene& scene, const T
     result.density = std::make_shared<const DensityGrid>(frame, sorted, bricks);
     result.occupied_voxels = result.density->occupied_voxels();
 
-    const auto means = sweep_all(frame, sorted, bricks, directions, progress);
+    std::optional<HairShadow> shadow;
+    if (scene.occluder) shadow.emplace(strands, *scene.occluder, progress);
+    const auto means = sweep_all(frame, sorted, bricks, directions, shadow ? &*shadow : nullptr, progress);
     result.average = correct_near_field(strands, frame, sorted, bricks, means, progress);
     progress.report("transmittance", 1);
     return result;

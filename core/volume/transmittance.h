@@ -62,9 +62,9 @@ struct Transmittance {
     /// cosine-weighted; with a receiver.
     std::vector<float> receiver;
     int directions = 0;
-    double voxel_size = 0;                       ///< effective h in model units; 0 for `trace`
-    std::uint64_t occupied_voxels = 0;           ///< voxels with extinction; 0 for `trace`
-    std::shared_ptr<const DensityGrid> density;  ///< what the sweep walked; null for `trace` and for an empty model
+    double voxel_size = 0;                       ///< effective h in model units; 0 but for `volume`
+    std::uint64_t occupied_voxels = 0;           ///< voxels with extinction; 0 but for `volume`
+    std::shared_ptr<const DensityGrid> density;  ///< what the sweep walked; null but for `volume` of a model
     std::vector<std::string> warnings;           ///< e.g. that the widths bounded the voxel size from below
 };
 

@@ -67,7 +67,7 @@ std::string make_bake_manifest(const std::string& id, const std::string& request
             if (!manifest.contains(name) || manifest[name].is_null()) manifest[name] = value;
     manifest["id"] = id;
     manifest["request"] = Json::parse(request);
-    for (const char* block : {"stages", "inputs", "repairs"}) manifest[block] = merged(parts, block);
+    for (const char* block : {"stages", "inputs", "repairs", "conventions"}) manifest[block] = merged(parts, block);
     manifest["warnings"] = joined(parts, "warnings");
     manifest["files"] = files(parts);
     manifest["timings_s"] = timings(parts);

@@ -81,7 +81,7 @@ void sweep_four_directions(benchmark::State& state) {
                                         normalized(Vec3d(0.7, 1, -0.6)), normalized(Vec3d(-0.2, 1, -0.9))};
     SweepScratch scratch;
     SweepSums sums(layout.slot_vertex.size());
-    for (auto _ : state) sweep(layout, directions, sweep_scale(1 << 20), scratch, sums);
+    for (auto _ : state) sweep(layout, directions, sweep_scale(1 << 20), {}, scratch, sums);
     per_vertex(state, 4);
 }
 BENCHMARK(sweep_four_directions)->Unit(benchmark::kMillisecond)->UseRealTime();

@@ -1,6 +1,8 @@
 // Accuracy, speed and memory of the transmittance stage, as plain tables.
 //
 //   bench_transmittance [--quick]      (--quick: models of 200,000 vertices, 1,024 reference directions)
+//   bench_transmittance --opacity-maps (layered deep opacity maps beside the volume method, 200,000 vertices)
+//   bench_transmittance --occluder     (the accuracy and time with an occluder alone)
 //
 // Every ratio is taken within this run: the peers are timed on a sample of the same model's vertices and scaled.
 #include <algorithm>
@@ -9,6 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -20,10 +23,13 @@
 #include "core/base/random.h"
 #include "core/hair/groom_generator.h"
 #include "core/hair/hair_file.h"
+#include "core/hair/head_mesh.h"
+#include "core/mesh/mesh_file.h"
 #include "core/reference/error_bar.h"
 #include "core/reference/nearest_strand.h"
 #include "core/reference/tracer.h"
 #include "core/volume/density_grid.h"
+#include "core/volume/opacity_transmittance.h"
 #include "core/volume/transmittance.h"
 #include "tests/bench/floor.h"
 #include "tests/bench/vdb_march.h"
@@ -54,13 +60,13 @@ StrandGeometry groom(GroomStyle style, std::size_t vertices, std::uint32_t per_s
 }
 
 /// Best of three: the machine is shared.
-double time_bake(const StrandGeometry& strands, const TransmittanceSettings& settings,
-                 Transmittance* result = nullptr) {
+double time_bake(const StrandGeometry& strands, const TransmittanceSettings& settings, Transmittance* result = nullptr,
+                 const TriangleMesh* occluder = nullptr) {
     Progress progress;
     double best = 1e9;
     for (int run = 0; run < 3; ++run)
         best = std::min(best, seconds([&] {
-                            Transmittance baked = bake_transmittance_volume({strands}, settings, progress);
+                            Transmittance baked = bake_transmittance_volume({strands, occluder}, settings, progress);
                             if (result) *result = std::move(baked);
                         }));
     return best;
@@ -81,12 +87,12 @@ std::vector<std::uint32_t> scored_vertices(const StrandGeometry& strands) {
     return spread;
 }
 
-void print_accuracy(const std::string& name, const StrandGeometry& strands, const char* target,
-                    const Options& options) {
+void print_accuracy(const std::string& name, const StrandGeometry& strands, const char* target, const Options& options,
+                    const TriangleMesh* occluder = nullptr) {
     Progress progress;
-    const Transmittance baked = bake_transmittance_volume({strands}, {}, progress);
+    const Transmittance baked = bake_transmittance_volume({strands, occluder}, {}, progress);
     const auto vertices = scored_vertices(strands);
-    const StrandScene scene(strands, progress);
+    const StrandScene scene(strands, progress, occluder);
     const auto directions = make_directions(DirectionSet::fibonacci, options.reference_directions(), 0);
     const auto traced = trace_transmittance(scene, vertices, directions, progress);
     std::vector<float> average;
@@ -115,6 +121,31 @@ void accuracy_table(const Options& options) {
     }
     print_accuracy("Sintel", make_strand_geometry(read_hair(folder / "sintel.hair"), {}), "RMSE <= 0.018", options);
     print_accuracy("fur ball", make_strand_geometry(read_hair(folder / "fur.hair"), {}), "none", options);
+}
+
+/// The heads under their hair: the truth is Embree with the mesh.
+void occluder_table(const Options& options) {
+    std::printf(
+        "\n## Accuracy with an occluder: 256 voxels, 100 directions, against Embree with %d directions\n\n"
+        "| model | vertices | scored | mean A | RMSE (95 %% interval) | bias | target "
+        "|\n|---|---|---|---|---|---|---|\n",
+        options.reference_directions());
+    const char* target = "RMSE <= 0.03";
+    const TriangleMesh head = make_head_mesh();
+    const StrandGeometry curly = groom(GroomStyle::curly, options.vertices());
+    print_accuracy("curly and its head", curly, target, options, &head);
+    print_accuracy("straight and its head", groom(GroomStyle::straight, options.vertices()), target, options, &head);
+    const auto folder = test_support::shared_data("");
+    if (std::filesystem::is_directory(folder / "mesh")) {
+        const TriangleMesh mesh = read_mesh(folder / "mesh" / "sintel.obj");
+        const StrandGeometry sintel = make_strand_geometry(read_hair(folder / "hair" / "sintel.hair"), {});
+        print_accuracy("Sintel and her head", sintel, target, options, &mesh);
+    } else {
+        std::printf("no real models in %s: set HAIRBAKE_SHARED_DATA\n", folder.c_str());
+    }
+    const double alone = time_bake(curly, {}), with_head = time_bake(curly, {}, nullptr, &head);
+    std::printf("\ntime, %zu vertices: %.2f s without, %.2f s with the head (%zu triangles)\n", curly.vertex_count(),
+                alone, with_head, head.triangles.size());
 }
 
 /// Vertices of whole strands spread over the groom, about `count` of them.
@@ -197,6 +228,57 @@ void scaling_tables(const Options& options) {
     }
 }
 
+TransmittanceSettings maps(int layers, double spacing, int resolution) {
+    TransmittanceSettings settings;
+    settings.method = TransmittanceMethod::opacity_maps;
+    settings.opacity_maps = {layers, spacing, resolution};
+    return settings;
+}
+
+/// Both methods with the same 100 directions, against one trace.
+void opacity_map_rows(const std::string& name, const StrandGeometry& strands) {
+    Progress progress;
+    const auto vertices = scored_vertices(strands);
+    const StrandScene scene(strands, progress);
+    const auto traced =
+        trace_transmittance(scene, vertices, make_directions(DirectionSet::fibonacci, 1024, 0), progress);
+    const std::pair<const char*, TransmittanceSettings> methods[] = {
+        {"volume, 256 voxels", {}},
+        {"3 layers 1:2:4, 512 texels (default)", maps(3, 2, 512)},
+        {"3 layers 1:2:4, 128 texels", maps(3, 2, 128)},
+        {"3 layers 1:2:4, 1024 texels", maps(3, 2, 1024)},
+        {"3 equal layers, 512 texels", maps(3, 1, 512)},
+        {"16 equal layers, 512 texels", maps(16, 1, 512)},
+    };
+    for (const auto& [method, settings] : methods) {
+        Transmittance baked;
+        const std::clock_t begin = std::clock();
+        const double wall = seconds([&, &s = settings] {
+            baked = s.method == TransmittanceMethod::opacity_maps
+                        ? bake_transmittance_opacity_maps({strands}, s, progress)
+                        : bake_transmittance_volume({strands}, s, progress);
+        });
+        const double cpu = double(std::clock() - begin) / CLOCKS_PER_SEC;
+        std::vector<float> average;
+        for (const std::uint32_t v : vertices) average.push_back(baked.average[v]);
+        const ErrorBar bar = error_statistics(average, traced);
+        std::printf("| %s | %s | %.4f (%.4f to %.4f) | %+.4f | %.2f | %.2f |\n", name.c_str(), method, bar.rmse,
+                    bar.rmse_ci95[0], bar.rmse_ci95[1], bar.bias, wall, cpu);
+        std::fflush(stdout);
+    }
+}
+
+void opacity_map_table() {
+    std::printf(
+        "\n## Deep opacity maps beside the volume method: 200,000 vertices, 100 directions, against Embree with 1,024 "
+        "directions\n\n| model | method | RMSE (95 %% interval) | bias | seconds | CPU seconds "
+        "|\n|---|---|---|---|---|---|\n");
+    opacity_map_rows("generated curly", groom(GroomStyle::curly, 200'000));
+    opacity_map_rows("generated straight", groom(GroomStyle::straight, 200'000));
+    const auto file = test_support::shared_data("hair/sintel.hair");
+    if (std::filesystem::exists(file)) opacity_map_rows("Sintel", make_strand_geometry(read_hair(file), {}));
+}
+
 double peak_megabytes() {
     std::ifstream status("/proc/self/status");
     for (std::string line; std::getline(status, line);)
@@ -238,6 +320,15 @@ void memory_table(const char* program, const Options& options) {
 int main(int argc, char** argv) {
     if (argc == 4 && std::strcmp(argv[1], "--memory") == 0)
         return measure_memory(std::strtoull(argv[2], nullptr, 10), std::atoi(argv[3]));
+    if (argc == 2 && std::strcmp(argv[1], "--opacity-maps") == 0) {
+        std::printf("# Transmittance, %d threads\n", thread_count());
+        opacity_map_table();
+        return 0;
+    }
+    if (argc == 2 && std::strcmp(argv[1], "--occluder") == 0) {
+        occluder_table({});
+        return 0;
+    }
     const Options options{argc > 1 && std::strcmp(argv[1], "--quick") == 0};
     std::printf("# Transmittance, %d threads\n", thread_count());
     {
@@ -254,4 +345,5 @@ int main(int argc, char** argv) {
     scaling_tables(options);
     memory_table(argv[0], options);
     accuracy_table(options);
+    occluder_table(options);
 }

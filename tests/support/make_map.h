@@ -23,6 +23,21 @@ inline EnvironmentMap make_map(int width, const std::function<Vec3d(const Vec3d&
     return map;
 }
 
+/// The same as a cube of size x size x 6.
+inline EnvironmentMap make_cube(int size, const std::function<Vec3d(const Vec3d&)>& radiance,
+                                const std::array<double, 3>& rotation_deg = {}) {
+    EnvironmentMap map;
+    map.shape = EnvironmentShape::cube;
+    map.layout = "faces";
+    map.width = size;
+    map.height = 6 * size;
+    map.rotation = rotation_matrix(rotation_deg);
+    for (int y = 0; y < map.height; ++y)
+        for (int x = 0; x < map.width; ++x)
+            map.pixels.push_back(Vec3f(radiance(direction_of(map, {x + 0.5, y + 0.5}))));
+    return map;
+}
+
 /// A black map with one texel whose flux (radiance times solid angle) is `flux`.
 inline EnvironmentMap one_texel_sun(int width, int x, int y, const Vec3d& flux, LatLong convention = LatLong::gltf,
                                     const std::array<double, 3>& rotation_deg = {}) {
@@ -43,6 +58,16 @@ inline EnvironmentMap noise_map(int width, std::uint64_t seed, LatLong conventio
             return Vec3d{random.next(), random.next(), random.next()};
         },
         convention, rotation_deg);
+}
+
+inline EnvironmentMap noise_cube(int size, std::uint64_t seed, const std::array<double, 3>& rotation_deg = {}) {
+    Random random(seed);
+    return make_cube(
+        size,
+        [&](const Vec3d&) {
+            return Vec3d{random.next(), random.next(), random.next()};
+        },
+        rotation_deg);
 }
 
 /// Uniform on the sphere.

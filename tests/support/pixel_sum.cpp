@@ -62,6 +62,25 @@ struct Row {
     }
 };
 
+// Of a cube: texel by texel.
+void sum_one_of_cube(const EnvironmentMap& map, const TexelSolidAngles& omega, const Vec3d& t, double exponent,
+                     int maps, Vec3d* sums) {
+    std::vector<double> kernel(maps);
+    for (int y = 0; y < map.height; ++y)
+        for (int x = 0; x < map.width; ++x) {
+            const Vec3d flux = Vec3d(map.pixels[std::size_t(y) * map.width + x]) * omega.at(x, y);
+            const double cosine = dot(direction_of(map, {x + 0.5, y + 0.5}), t);
+            const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+            for (int m = 0; m < maps; ++m) {
+                const double theta = std::numbers::pi * m / (maps - 1);
+                kernel[m] = sine * std::sin(theta) - cosine * std::cos(theta);
+            }
+            raise(kernel, exponent);
+            sums[0] += flux * sine;
+            for (int m = 0; m < maps; ++m) sums[1 + m] += flux * kernel[m];
+        }
+}
+
 void sum_one(const EnvironmentMap& map, const LatLongRows& rows, const LatLongColumns& columns, const Vec3d& t,
              double exponent, int maps, Vec3d* sums) {
     Row row(map.width);
@@ -82,10 +101,17 @@ void sum_one(const EnvironmentMap& map, const LatLongRows& rows, const LatLongCo
 
 std::vector<Vec3d> sum_over_pixels(const EnvironmentMap& map, std::span<const Vec3d> tangents, double exponent,
                                    int maps) {
+    std::vector<Vec3d> sums(tangents.size() * (1 + maps));
+    if (map.shape == EnvironmentShape::cube) {
+        const TexelSolidAngles omega = texel_solid_angles(map);
+        parallel_for(tangents.size(), 1, [&](std::size_t i, std::size_t) {
+            sum_one_of_cube(map, omega, tangents[i], exponent, maps, sums.data() + i * (1 + maps));
+        });
+        return sums;
+    }
     const LatLongRows rows = latlong_rows(map.width, map.height);
     const LatLongColumns columns = latlong_columns(map.width);
     const Matrix3 to_world = map_to_world(map);
-    std::vector<Vec3d> sums(tangents.size() * (1 + maps));
     parallel_for(tangents.size(), 1, [&](std::size_t i, std::size_t) {
         sum_one(map, rows, columns, transform_back(to_world, tangents[i]), exponent, maps,
                 sums.data() + i * (1 + maps));

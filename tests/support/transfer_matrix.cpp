@@ -1,7 +1,7 @@
 #include "tests/support/transfer_matrix.h"
 
+#include "core/base/spherical_harmonics.h"
 #include "core/environment/latlong.h"
-#include "core/environment/spherical_harmonics.h"
 
 namespace hairbake::testing {
 

@@ -46,6 +46,39 @@ TEST(BakeCommand, LaterWinsPresetThenRequestFileThenFlagsThenSet) {
     EXPECT_EQ(request["outputs"], nlohmann::json({"npy"}));
 }
 
+TEST(BakeCommand, TakesSixFacesAsAFolderOrAPatternAndLights) {
+    // Faces of one colour each, written as PFM by hand: the brightest is +Y.
+    const Workshop workshop;
+    std::filesystem::create_directory(workshop.path("sky"));
+    for (const std::string face : {"px", "nx", "py", "ny", "pz", "nz"}) {
+        const std::vector<float> values(3 * 2 * 2, face == "py" ? 5.0f : 1.0f);
+        std::ofstream file(workshop.path("sky/day_" + face + ".pfm"), std::ios::binary);
+        file << "PF\n2 2\n-1.0\n";
+        file.write(reinterpret_cast<const char*>(values.data()), std::streamsize(values.size() * sizeof(float)));
+    }
+    const std::string light = R"( --set 'irradiance.lights=[{"direction": [0, 1, 0], "irradiance": [1, 2, 3]}]')";
+    const std::string quick = " --face-size 4 --specular-maps 3";
+    const Finished one = hairbake("bake --env " + workshop.path("sky") + workshop.out("a") + quick + light);
+    ASSERT_EQ(one.exit_code, 0) << one.output;
+    const Finished two = hairbake("bake --env '" + workshop.path("sky/day_{face}.pfm") + "' --layout faces" +
+                                  workshop.out("b") + quick + light);
+    ASSERT_EQ(two.exit_code, 0) << two.output;
+    const auto a = json_of(workshop.path("a/manifest.json")), b = json_of(workshop.path("b/manifest.json"));
+    EXPECT_EQ(a["inputs"]["environment"]["layout"], "faces");
+    EXPECT_EQ(a["inputs"]["environment"]["face_size"], 2);
+    EXPECT_EQ(a["inputs"]["environment"]["sha256"], b["inputs"]["environment"]["sha256"]);
+    EXPECT_EQ(a["irradiance"], b["irradiance"]);
+    EXPECT_EQ(a["request"]["irradiance"]["lights"][0]["irradiance"], nlohmann::json({1.0, 2.0, 3.0}));
+
+    const auto facts = nlohmann::json::parse(hairbake("info --json " + workshop.path("sky")).output);
+    EXPECT_EQ(facts["layout"], "faces");
+    EXPECT_EQ(facts["brightest_pixel"]["face"], "+Y");
+    const Finished missing =
+        hairbake("bake --env '" + workshop.path("sky/night_{face}.pfm") + "'" + workshop.out("c") + " 2>&1");
+    EXPECT_EQ(missing.exit_code, 3);
+    EXPECT_TRUE(contains(missing.output, "no faces of a cube map")) << missing.output;
+}
+
 TEST(BakeCommand, ShBandsSetsBothKindsOfMap) {
     const Workshop workshop;
     ASSERT_EQ(hairbake("bake" + workshop.env() + workshop.out() +
@@ -81,7 +114,7 @@ TEST(BakeCommand, UsageErrorsEndWithTwoAndNameTheFieldAndWhatIsAllowed) {
         {both + " --preset best", "draft, final, paper"},
         {both + " --threads -1", "--threads"},
         {both + " --progress loud", "--progress"},
-        {both + " --outputs npy,ktx2", "npy, exr, hair"},
+        {both + " --outputs npy,obj", "npy, exr, hair, ktx2, dds, raw, glb, vdb"},
         {"sample " + workshop.path("s") + " --paper-model 5", "--paper-model"},
         {"presets best", "draft, final, paper"},
     };

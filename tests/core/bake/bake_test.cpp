@@ -2,13 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/base/digest.h"
+#include "core/base/error.h"
+#include "core/hair/hair_file.h"
 #include "tests/core/bake/small_inputs.h"
+#include "tests/support/tfx_bytes.h"
 
 namespace hairbake {
 namespace {
@@ -42,6 +47,7 @@ TEST(Bake, SameRequestGivesTheSameBytesForOneTwoAndSevenThreads) {
     const SmallInputs inputs;
     BakeRequest request = inputs.request();
     request.transmittance.direction_set = DirectionSet::random;
+    request.outputs = output_formats();
     bake_to(request, inputs.folder / "1", 1);
     const auto expected = contents(inputs.folder / "1");
     for (const int threads : {1, 2, 7}) {
@@ -51,6 +57,40 @@ TEST(Bake, SameRequestGivesTheSameBytesForOneTwoAndSevenThreads) {
         for (const auto& [name, bytes] : expected)
             EXPECT_TRUE(found.at(name) == bytes) << name << " differs with " << threads << " threads";
     }
+}
+
+TEST(Bake, AnOccluderDarkensTheHairAndTheManifestTellsWhatItIs) {
+    const SmallInputs inputs;
+    BakeRequest request = inputs.request();
+    request.environment.reset();
+    Progress progress;
+    BakeResult bare = bake(request, 2, progress);
+    request.occluder = (inputs.folder / "samples" / "head.obj").string();
+    for (const auto method : {TransmittanceMethod::volume, TransmittanceMethod::trace}) {
+        request.transmittance.method = method;
+        BakeResult result = bake(request, 2, progress);
+        EXPECT_NE(result.transmittance_key, bare.transmittance_key);
+        write_result(result, inputs.folder / "out", progress);
+        const Json manifest = Json::parse(get(inputs.folder / "out" / "manifest.json"));
+        const Json& occluder = manifest["inputs"]["occluder"];
+        EXPECT_EQ(occluder["sha256"], digest_of_file(*request.occluder));
+        EXPECT_EQ(occluder["triangles"], 36480);  // 96 rings of 192 columns: 2 x 192 x 95
+        EXPECT_EQ(occluder["closed"], true);
+        EXPECT_EQ(manifest["warnings"], Json::array());
+        // The hair of 3,000 vertices is thin: the head alone takes about half of a root's sky.
+        EXPECT_LT(manifest["transmittance"]["mean"].get<double>(), 0.9);
+        EXPECT_LT(result.transmittance->average[0], 0.55f);
+        EXPECT_LT(std::abs(manifest["error_bar"]["bias"].get<double>()), 0.05);
+    }
+    // Without its last triangle it is a shell.
+    std::string text = get(*request.occluder);
+    text.resize(text.rfind("\nf ") + 1);
+    std::ofstream(inputs.folder / "open.obj") << text;
+    request.occluder = (inputs.folder / "open.obj").string();
+    const BakeResult open = bake(request, 2, progress);
+    EXPECT_FALSE(open.occluder_topology.closed);
+    ASSERT_EQ(open.warnings.size(), 1u);
+    EXPECT_NE(open.warnings[0].find("3 of its"), std::string::npos) << open.warnings[0];
 }
 
 TEST(Bake, HairAloneBakesTransmittanceAndEnvironmentAloneMaps) {
@@ -68,6 +108,80 @@ TEST(Bake, HairAloneBakesTransmittanceAndEnvironmentAloneMaps) {
     for (const char* name : {"diffuse.npy", "specular.npy", "diffuse.exr", "specular_02_latlong.exr",
                              "environment_sh.json", "preview.png", "manifest.json"})
         EXPECT_TRUE(fs::exists(inputs.folder / "environment" / name)) << name;
+}
+
+TEST(Bake, TakesATressFxFileAndCountsItsDegenerateSegments) {
+    const SmallInputs inputs;
+    // Two strands of four points at (i, 0.5 i, -i), i = 0 .. 7; then point 1 moves to within 1e-6 of point 0: a segment
+    // below 1e-6 of the longest side, which is 7.
+    test_support::HairBytes file = test_support::make_tfx_bytes(4, 2, 4);
+    std::uint32_t positions = 0;
+    std::memcpy(&positions, file.bytes.data() + test_support::kTfx4.positions, 4);
+    file.set(positions + 16, 1e-6f).set(positions + 20, 0.f).set(positions + 24, 0.f);
+    std::ofstream(inputs.folder / "two.tfx", std::ios::binary)
+        .write(reinterpret_cast<const char*>(file.bytes.data()), static_cast<std::streamsize>(file.bytes.size()));
+    BakeRequest request = inputs.request();
+    request.environment.reset();
+    request.hair = (inputs.folder / "two.tfx").string();
+    EXPECT_THROW(bake_to(request, inputs.folder / "out"), Error);  // it has no width
+    request.strand.width = 0.01;
+    bake_to(request, inputs.folder / "out");
+    const Json manifest = Json::parse(get(inputs.folder / "out" / "manifest.json"));
+    EXPECT_EQ(manifest["inputs"]["hair"]["segments"], 6);
+    EXPECT_EQ(manifest["repairs"]["hair"]["degenerate_segments"], 1);
+    const HairModel baked = read_hair(inputs.folder / "out" / "transmittance.hair");
+    EXPECT_EQ(baked.format, "HAIR");
+    EXPECT_EQ(baked.vertex_count(), 8u);
+    EXPECT_EQ(baked.strand_count(), 2u);
+}
+
+TEST(Bake, TakesTheMethodOfOpacityMaps) {
+    const SmallInputs inputs;
+    BakeRequest request = inputs.request();
+    request.environment.reset();
+    request.transmittance.method = TransmittanceMethod::opacity_maps;
+    request.transmittance.opacity_maps.resolution = 64;
+    Progress progress;
+    const BakeResult maps = bake(request, 2, progress);
+    EXPECT_EQ(maps.transmittance->average.size(), 3000u);
+    EXPECT_TRUE(maps.error_bar.has_value());
+    request.transmittance.opacity_maps.layers = 4;
+    EXPECT_NE(bake(request, 2, progress).transmittance_key, maps.transmittance_key);
+}
+
+TEST(Bake, WritesEveryOutputAndTheManifestKnowsItsDigestSizeAndScale) {
+    const SmallInputs inputs;
+    BakeRequest request = inputs.request();
+    request.outputs = {"ktx2", "dds", "raw", "glb", "vdb"};
+    request.environment_settings.exposure_stops = 20;  // beyond halves
+    bake_to(request, inputs.folder / "result");
+    const Json manifest = Json::parse(get(inputs.folder / "result" / "manifest.json"));
+    std::map<std::string, Json> files;
+    for (const Json& file : manifest["files"]) files[file["name"]] = file;
+    for (const char* name : {"diffuse.ktx2", "specular.ktx2", "diffuse.dds", "specular_02.dds", "maps.f16"})
+        EXPECT_GT(files[name].value("scale", 0.0), 1.0) << name;
+    for (const char* name : {"maps.json", "strands.bin", "strands.json", "hair.glb", "density.vdb"})
+        EXPECT_TRUE(files.contains(name) && !files[name].contains("scale")) << name;
+    for (const auto& [name, file] : files) {
+        EXPECT_EQ(file["sha256"], digest_of_file(inputs.folder / "result" / name)) << name;
+        EXPECT_EQ(file["bytes"], fs::file_size(inputs.folder / "result" / name)) << name;
+    }
+    EXPECT_EQ(files.size(), 12u + 2);  // 4 dds, 2 ktx2, 2 + 2 raw, glb, vdb; environment_sh.json and preview.png
+}
+
+TEST(Bake, AnEmptyModelHasNoDensityGridWhichIsAWarning) {
+    const test_support::TemporaryFolder folder;
+    HairModel none;
+    none.strand_begin = {0};
+    write_hair(none, folder / "none.hair");
+    BakeRequest request;
+    request.hair = (folder / "none.hair").string();
+    request.outputs = {"raw", "glb", "vdb"};
+    bake_to(request, folder / "result");
+    EXPECT_FALSE(fs::exists(folder / "result" / "density.vdb"));
+    EXPECT_TRUE(fs::exists(folder / "result" / "hair.glb"));
+    const std::string warnings = Json::parse(get(folder / "result" / "manifest.json"))["warnings"].dump();
+    EXPECT_NE(warnings.find("density.vdb is left out"), std::string::npos) << warnings;
 }
 
 TEST(Bake, StagesDoNotKnowOfEachOther) {

@@ -168,7 +168,7 @@ TEST(HostileImage, WhatIsNoEnvironmentMapIsRefusedWithTheReason) {
         output->close();
     };
     write("square.exr", 16, 16, [](OIIO::ImageSpec&) {});
-    EXPECT_NE(refusal(folder / "square.exr").find("16 x 16 pixels; a lat-long map is twice as wide"),
+    EXPECT_NE(refusal(folder / "square.exr").find("16 x 16 pixels, the shape of no layout; known are 2:1 (latlong)"),
               std::string::npos);
     write("window.exr", 16, 8, [](OIIO::ImageSpec& s) { s.full_width = 32; });
     EXPECT_NE(refusal(folder / "window.exr").find("display window"), std::string::npos);

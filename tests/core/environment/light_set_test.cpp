@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/base/parallel.h"
+#include "core/environment/cube_map.h"
 #include "core/environment/latlong.h"
 #include "core/environment/sky_generator.h"
 #include "tests/support/make_map.h"
@@ -38,6 +39,60 @@ TEST(LightSet, FluxAndFirstMomentAreKept) {
     }
     // A light sits on the sphere, the moment of its cell is shorter by spread^2 / 2: at most radius^2 / 2 of the flux.
     EXPECT_LT(length(light_moment - moment), 0.5 * lights.radius * lights.radius * (flux.x + flux.y + flux.z));
+}
+
+TEST(LightSet, ACubesFluxAndFirstMomentAreKept) {
+    // 16: a light for every texel; 65: cells at the edges of a face hold several texels, others none; 200: all several.
+    Progress progress;
+    for (const int size : {1, 16, 65, 200}) {
+        const EnvironmentMap map = testing::noise_cube(size, 1, {10, 20, 30});
+        const TexelSolidAngles omega = texel_solid_angles(map);
+        Vec3d flux, moment;
+        for (int y = 0; y < map.height; ++y)
+            for (int x = 0; x < map.width; ++x) {
+                const Vec3d texel = Vec3d(map.pixels[std::size_t(y) * map.width + x]) * omega.at(x, y);
+                flux += texel;
+                moment += direction_of(map, {x + 0.5, y + 0.5}) * (texel.x + texel.y + texel.z);
+            }
+        const LightSet lights = make_light_set(map, 64, progress);
+        EXPECT_TRUE(size > 64 || lights.size() == map.pixels.size());
+        EXPECT_LE(lights.size(), 6u * 64 * 64);
+        EXPECT_LT(length(lights.total - flux), 1e-11);
+        Vec3d light_moment;
+        for (std::size_t i = 0; i < lights.size(); ++i) {
+            const float* f = &lights.flux[4 * i];
+            light_moment += Vec3d{lights.x[i], lights.y[i], lights.z[i]} * double(f[0] + f[1] + f[2]);
+        }
+        // As above; every texel of its own: single precision of the lights.
+        const double spread = size <= 64 ? 0 : 0.5 * lights.radius * lights.radius;
+        EXPECT_LT(length(light_moment - moment), (spread + 1e-6) * (flux.x + flux.y + flux.z)) << size;
+    }
+}
+
+TEST(LightSet, NoTexelOfACubeIsFurtherFromItsLightThanTheRadius) {
+    // One lit texel beside a brighter one: where they share a cell the light lies between them. With a whole cell lit
+    // at one texel after the other, the light of the pair stays within the radius of both.
+    Progress progress;
+    const int size = 130;
+    EnvironmentMap map = testing::make_cube(size, [](const Vec3d&) { return Vec3d(); });
+    const double radius = make_light_set(map, 64, progress).radius;
+    // Texels are 2 / size wide. Cells: at a face's middle 2 x 2, 2.8 diagonally; in its corners up to 4 x 4, seen from
+    // sqrt(2.9) away: 3.3.
+    EXPECT_LT(radius, 3.5 * 2.0 / size);
+    for (int x = 0; x + 1 < size; x += 3) {
+        const std::size_t index = cube_texel_index(size, 2, x, x);
+        map.pixels[index] = Vec3f(1);
+        map.pixels[index + 1] = Vec3f(3);
+        const LightSet lights = make_light_set(map, 64, progress);
+        for (int k = 0; k < 2; ++k) {
+            const Vec3d texel = direction_of(map, {x + k + 0.5, 2 * size + x + 0.5});
+            double nearest = 10;
+            for (std::size_t i = 0; i < lights.size(); ++i)
+                nearest = std::min(nearest, length(Vec3d{lights.x[i], lights.y[i], lights.z[i]} - texel));
+            EXPECT_LE(nearest, radius);
+        }
+        map.pixels[index] = map.pixels[index + 1] = Vec3f(0);
+    }
 }
 
 TEST(LightSet, ASunKeepsItsExactPlace) {

@@ -1,4 +1,4 @@
-#include "core/environment/spherical_harmonics.h"
+#include "core/base/spherical_harmonics.h"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/base/random.h"
 #include "core/environment/sh_projection.h"
+#include "core/environment/sh_rotation.h"
 #include "tests/support/make_map.h"
 
 namespace hairbake {
@@ -143,6 +144,40 @@ TEST(ShProjection, TheSeparableFormEqualsTheSumOverTexels) {
         // Both are sums of at most 2048 terms of total size 4 pi in double.
         for (int i = 0; i < basis.count(); ++i) EXPECT_LT(length(c[i] - expected[i]), 1e-12) << i;
     }
+}
+
+TEST(ShProjection, ACubesFoldedFormEqualsTheSumOverTexels) {
+    // Odd sizes have texels that are their own mirror images. Bands 1 to 20 hold every parity in x, y and z.
+    const int bands = 20;
+    const ShBasis basis(bands);
+    std::vector<double> y(basis.count());
+    Progress progress;
+    for (const int size : {1, 2, 7, 24}) {
+        const EnvironmentMap map = testing::noise_cube(size, 5, {10, 20, 30});
+        const TexelSolidAngles omega = texel_solid_angles(map);
+        std::vector<Vec3d> expected(basis.count());
+        for (int row = 0; row < map.height; ++row)
+            for (int column = 0; column < size; ++column) {
+                basis.evaluate(transform_back(map_to_world(map), direction_of(map, {column + 0.5, row + 0.5})), y);
+                for (int i = 0; i < basis.count(); ++i)
+                    expected[i] += Vec3d(map.pixels[std::size_t(row) * size + column]) * (omega.at(column, row) * y[i]);
+            }
+        const std::vector<Vec3d> c = project_sh(map, bands, progress);
+        // Sums of at most 3456 terms of total size 4 pi in double; directions of the two ways differ by 1e-16 times
+        // the slope of 20 bands.
+        for (int i = 0; i < basis.count(); ++i) EXPECT_LT(length(c[i] - expected[i]), 1e-12) << size << ' ' << i;
+    }
+}
+
+TEST(ShProjection, ThreadsDoNotChangeABitOfACubes) {
+    const EnvironmentMap map = testing::noise_cube(37, 7);
+    std::vector<Vec3d> c[2];
+    for (int k = 0; k < 2; ++k)
+        with_threads(1 + 6 * k, [&] {
+            Progress progress;
+            c[k] = project_sh(map, 12, progress);
+        });
+    EXPECT_EQ(c[0], c[1]);
 }
 
 TEST(ShProjection, ASmoothFunctionComesBackWithSecondOrderInTheTexelSize) {

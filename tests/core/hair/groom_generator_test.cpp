@@ -110,7 +110,7 @@ TEST(GroomGenerator, LiesOutsideTheHeadMeshToo) {
     // Independent of the shape's formula: the solid angle under which a closed mesh is seen is 0 from outside and
     // 4 pi from inside (van Oosterom and Strackee). Vertices from the fifth on keep 0.02 cm * min(1, 8 * 4/29) = 0.02
     // cm or more from the shape, the facets of the mesh stay within that of it under the hair.
-    const HeadMesh mesh = make_head_mesh();
+    const TriangleMesh mesh = make_head_mesh();
     const auto solid_angle_from = [&](const Vec3d& eye) {
         double sum = 0;
         for (const auto& t : mesh.triangles) {

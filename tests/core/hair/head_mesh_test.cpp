@@ -18,7 +18,7 @@ using hairbake::test_support::TemporaryFolder;
 
 TEST(HeadMesh, IsClosedAndOriented) {
     for (const int rings : {4, 17, 96}) {
-        const HeadMesh mesh = make_head_mesh(rings);
+        const TriangleMesh mesh = make_head_mesh(rings);
         std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;  // directed
         for (const auto& t : mesh.triangles)
             for (int corner = 0; corner < 3; ++corner) ++edges[{t[corner], t[(corner + 1) % 3]}];
@@ -34,7 +34,7 @@ TEST(HeadMesh, IsClosedAndOriented) {
 
 TEST(HeadMesh, HasTheVolumeOfTheShape) {
     const int rings = 96;
-    const HeadMesh mesh = make_head_mesh(rings);
+    const TriangleMesh mesh = make_head_mesh(rings);
     double volume = 0;
     for (const auto& t : mesh.triangles)
         volume += dot(Vec3d(mesh.positions[t[0]]), cross(Vec3d(mesh.positions[t[1]]), Vec3d(mesh.positions[t[2]]))) / 6;
@@ -58,7 +58,7 @@ TEST(HeadMesh, HasTheVolumeOfTheShape) {
 }
 
 TEST(HeadMesh, HasUnitNormalsThatAgreeWithItsFacets) {
-    const HeadMesh mesh = make_head_mesh();
+    const TriangleMesh mesh = make_head_mesh();
     ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
     for (const Vec3f& n : mesh.normals) ASSERT_NEAR(length(n), 1, 3e-7);  // rounding to floats: 3 * 2^-24 at most
     double agreement = 0, area = 0;
@@ -87,7 +87,7 @@ TEST(HeadMesh, ItsShapeIsAHead) {
 
 TEST(HeadMesh, WritesAnObjFileThatReadsBack) {
     const TemporaryFolder folder;
-    const HeadMesh mesh = make_head_mesh(12);
+    const TriangleMesh mesh = make_head_mesh(12);
     write_obj(mesh, folder / "head.obj");
     std::ifstream stream(folder / "head.obj");
     std::size_t positions = 0, normals = 0, faces = 0;

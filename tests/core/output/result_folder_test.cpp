@@ -142,6 +142,22 @@ TEST(ResultFolder, ACommitAfterDiscardFailsAndLeavesNothing) {
     discard_staging(folder / "out");  // nothing there: no harm
 }
 
+TEST(ResultFolder, WhatAKilledProcessLeftIsCollectedAndNothingElse) {
+    const TemporaryFolder folder;
+    const std::string own = staging_folder(folder / "out").filename();
+    const std::string prefix = own.substr(0, own.rfind('-') + 1);  // ".out.hairbake-HOST-"
+    const std::string dead = prefix + "2147483647";                // above the kernel's largest process number, 2^22
+    const std::string alive = prefix + "1";
+    const std::string elsewhere = ".out.hairbake-another-machine-2147483647";
+    const std::string other_result = ".out2" + dead.substr(4), other_file = prefix + "x";
+    for (const std::string& name : {dead, dead + "-old", alive, elsewhere, other_result, other_file})
+        fs::create_directory(folder / name);
+    write_result_with(folder / "out", "1");
+    Names expected{alive, elsewhere, other_result, other_file, "out"};
+    std::sort(expected.begin(), expected.end());
+    EXPECT_EQ(names_in(folder / ""), expected);
+}
+
 TEST(ResultFolder, APlaceThatCannotBeWrittenIsBadInput) {
     try {
         ResultFolder result("/proc/hairbake/out");

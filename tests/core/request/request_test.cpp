@@ -96,6 +96,19 @@ TEST(Request, OutputsAreKnownAndNamedOnce) {
     expect_refused(request, "outputs", {"npy twice"});
 }
 
+TEST(Request, AVdbNeedsTheMethodWithADensityGrid) {
+    BakeRequest request = valid();
+    request.outputs = {"vdb"};
+    EXPECT_NO_THROW(validate(request));
+    for (const auto method : {TransmittanceMethod::trace, TransmittanceMethod::opacity_maps}) {
+        request.transmittance.method = method;
+        expect_refused(request, "outputs", {"no density grid", "volume"});
+    }
+    request.hair.reset();  // then there is no transmittance, and nothing to refuse
+    request.environment = "a.hdr";
+    EXPECT_NO_THROW(validate(request));
+}
+
 TEST(Request, EveryEndOfARangeIsAllowedAndBeyondIsNot) {
     struct Case {
         const char* field;

@@ -144,6 +144,24 @@ TEST(DensityGrid, HoldsIsotropicStrandsLessTheMixingFactor) {
     EXPECT_LT(ratio, 0.9619 + 0.0381 * 0.1);
 }
 
+TEST(DensityGrid, GivesTheSameBytesEachTimeAndATagOfItsContents) {
+    // OpenVDB itself puts a random UUID into each file: 36 characters from byte 21.
+    const Stages stages(fibres_off_centre(), with_voxels(40)), coarser(fibres_off_centre(), with_voxels(32));
+    const DensityGrid grid(stages.frame, stages.sorted, stages.bricks);
+    const std::string bytes = grid.encode();
+    EXPECT_TRUE(bytes == grid.encode());
+    EXPECT_TRUE(bytes == DensityGrid(stages.frame, stages.sorted, stages.bricks).encode());
+    const TemporaryFolder folder;
+    grid.write(folder / "density.vdb");
+    openvdb::initialize();
+    openvdb::io::File in((folder / "density.vdb").string());
+    in.open();
+    EXPECT_EQ(in.getUniqueTag(), bytes.substr(21, 36));
+    EXPECT_TRUE(in.hasGrid("density"));
+    const DensityGrid other(coarser.frame, coarser.sorted, coarser.bricks);
+    EXPECT_NE(other.encode().substr(21, 36), bytes.substr(21, 36));
+}
+
 TEST(DensityGrid, CannotBeWrittenWhereThereIsNoFolder) {
     const Stages stages(fibres_off_centre(), with_voxels(40));
     const DensityGrid grid(stages.frame, stages.sorted, stages.bricks);

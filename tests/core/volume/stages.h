@@ -36,7 +36,7 @@ inline std::vector<float> sweep_one(const StrandGeometry& strands, const Stages&
     const SliceLayout layout = make_slice_layout(stages.frame, stages.sorted, stages.bricks, axis, progress);
     SweepScratch scratch;
     SweepSums sums(layout.slot_vertex.size());
-    sweep(layout, std::span(&l, 1), sweep_scale(1), scratch, sums);
+    sweep(layout, std::span(&l, 1), sweep_scale(1), {}, scratch, sums);
     std::vector<float> t(strands.vertex_count());
     for (std::size_t i = 0; i < layout.slot_vertex.size(); ++i)
         if (layout.slot_vertex[i] != SliceLayout::no_vertex)

@@ -115,7 +115,7 @@ TEST(Sweep, OfTwoDirectionsTogetherIsTheSumOfBoth) {
     const std::vector<Vec3d> both{normalized(Vec3d(1, 0.3, 0.2)), normalized(Vec3d(1, -0.8, 0.6))};
     SweepScratch scratch;
     SweepSums sums(layout.slot_vertex.size());
-    sweep(layout, both, sweep_scale(2), scratch, sums);
+    sweep(layout, both, sweep_scale(2), {}, scratch, sums);
     const auto a = sweep_one(block.strands, stages, both[0]), b = sweep_one(block.strands, stages, both[1]);
     for (std::size_t i = 0; i < layout.slot_vertex.size(); ++i) {
         if (layout.slot_vertex[i] == SliceLayout::no_vertex) continue;

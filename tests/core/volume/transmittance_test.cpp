@@ -277,6 +277,25 @@ TEST(Transmittance, RefusesBoundsThatNoGridHolds) {
     }
 }
 
+TEST(Transmittance, AVoxelThatHoldsTheWholeModelIsBakedWithBoundedWork) {
+    // 100,000 strands of length 0.1 in one voxel of edge 1: corrected pair by pair, they would take minutes (and the
+    // test's time-out). A width of 5e-5 gives the voxel a trace of 1e5 * 0.1 * 5e-5 = 0.5. The optical depth of a way
+    // of length s is at most trace * s, and no way inside the voxel is longer than sqrt(3): A >= exp(-0.87) = 0.42. The
+    // near field is left alone beyond 4,096 pieces, so nothing but the own strand (factor exp(0.35 * 5e-5)) is above 1.
+    Random random(5);
+    StrandModel model;
+    model.add_box({0, 0, 0}, {32, 32, 32});
+    for (int i = 0; i < 100'000; ++i) {
+        const Vec3d a = random_point_in_box(random, {16.4, 16.4, 16.4}, {16.6, 16.6, 16.6});
+        model.add({a, a + random_direction(random) * 0.1}, 5e-5);
+    }
+    const auto average = bake(model.geometry(), with_voxel_size(1));
+    ASSERT_EQ(average.size(), 200'002u);
+    const auto [least, most] = std::minmax_element(average.begin() + 2, average.end());
+    EXPECT_GE(*least, 0.42f);
+    EXPECT_LT(*most, 0.99f);
+}
+
 TEST(Transmittance, StopsWhenItIsCancelled) {
     /// Cancels itself when the stage has come so far.
     struct CancelsAt : Progress {

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/base/vec.h"
-#include "core/environment/environment_map.h"
 
 namespace hairbake {
 
@@ -40,10 +39,5 @@ private:
     std::vector<double> a_, b_;              // P_l = a (z P_l-1 - b P_l-2)
     std::vector<double> first_;              // P_mm / sin^m
 };
-
-/// Coefficients of the function g with g(orthogonal * w) = f(w), f given by `coefficients` [bands * bands]: f turned
-/// (or mirrored) actively by the matrix. Exact up to rounding: f is evaluated at the nodes of a quadrature that is
-/// exact for its degree, and projected again. Cost grows as bands^4; runs on all threads.
-std::vector<Vec3d> rotate_sh(std::span<const Vec3d> coefficients, int bands, const Matrix3& orthogonal);
 
 }  // namespace hairbake

@@ -1,0 +1,148 @@
+#include "core/environment/environment_assembly.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "core/base/parallel.h"
+#include "core/environment/cube_layout.h"
+#include "core/environment/image_file.h"
+
+namespace hairbake {
+namespace {
+
+constexpr int largest_face = 4096, widest_latlong = 16384;
+constexpr std::int64_t most_pixels = std::int64_t(1) << 27;
+
+[[noreturn]] void fail(const std::filesystem::path& file, const std::string& what) {
+    throw Error(ErrorKind::bad_input, file.string() + ": " + what);
+}
+
+std::string size_text(int width, int height) { return std::to_string(width) + " x " + std::to_string(height); }
+
+std::string fault_of_face(int width, int height) {
+    if (width != height || width < 1)
+        return "the size is " + size_text(width, height) + " pixels; a face of a cube map is square (layout faces)";
+    if (width > largest_face)
+        return "the declared size is " + size_text(width, height) + " pixels; allowed are faces up to " +
+               size_text(largest_face, largest_face);
+    return {};
+}
+
+// IEC 61966-2-1.
+float srgb_to_linear(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
+
+void linearize(std::vector<Vec3f>& pixels, const Progress& progress) {
+    parallel_for(pixels.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+        progress.check();
+        for (std::size_t i = begin; i < end; ++i)
+            pixels[i] = {srgb_to_linear(pixels[i].x), srgb_to_linear(pixels[i].y), srgb_to_linear(pixels[i].z)};
+    });
+}
+
+// What the file says beside its pixels; of several files, each warning once.
+void take_facts(ImageFile& image, EnvironmentMap& map, const Progress& progress) {
+    map.source_format = image.format;
+    map.primaries = image.primaries;
+    if (image.integer) {
+        map.low_dynamic_range = true;
+        image.warnings.push_back(
+            "the image holds integers: decoded as sRGB, its dynamic range is low and lamps are clipped");
+        linearize(image.pixels, progress);
+    }
+    for (const std::string& warning : image.warnings)
+        if (std::find(map.warnings.begin(), map.warnings.end(), warning) == map.warnings.end())
+            map.warnings.push_back(warning);
+}
+
+void become_cube(EnvironmentMap& map, int size) {
+    map.shape = EnvironmentShape::cube;
+    map.width = size;
+    map.height = cube_faces * size;
+}
+
+// EXR has a layout of its own whose faces are oriented otherwise.
+void check_openexr_cube(const std::filesystem::path& file, const std::string& requested, ImageFile& image) {
+    if (!image.openexr_cube) return;
+    if (requested != "vertical_strip")
+        fail(file,
+             "the file says that it is OpenEXR's cube map (envmap attribute), whose faces are oriented in another way; "
+             "allowed are lat-long maps and cubes in the orientation of OpenGL. irradiance.layout = vertical_strip "
+             "takes its faces as such");
+    image.warnings.push_back(
+        "the EXR envmap attribute says cube map, whose faces OpenEXR orients in another way: they were taken in the "
+        "orientation of OpenGL, as vertical_strip asks");
+}
+
+EnvironmentMap read_one_picture(const std::filesystem::path& file, const std::string& requested, Progress& progress) {
+    if (requested == "faces")
+        fail(file, "this is one picture; layout faces takes a folder with six, or a pattern with {face}");
+    const auto check = [&](int width, int height) { return fault_of_size(requested, width, height); };
+    ImageFile image = read_image_file(file, check, {0, 0.9}, progress);
+    check_openexr_cube(file, requested, image);
+    EnvironmentMap map;
+    take_facts(image, map, progress);
+    map.layout = layout_of_shape(image.width, image.height);
+    const CubeLayout* layout = find_cube_layout(map.layout);
+    if (!layout) {
+        map.width = image.width;
+        map.height = image.height;
+        map.pixels = std::move(image.pixels);
+        return map;
+    }
+    become_cube(map, image.width / layout->columns);
+    map.pixels = take_cube(*layout, map.width, image.pixels);
+    return map;
+}
+
+EnvironmentMap read_faces(const EnvironmentFiles& files, const std::string& requested, Progress& progress) {
+    if (requested != "auto" && requested != "faces")
+        fail(files.files[0].parent_path(), "these are six pictures; layout " + requested + " takes one");
+    EnvironmentMap map;
+    map.layout = "faces";
+    int size = 0;
+    for (int face = 0; face < cube_faces; ++face) {
+        const std::filesystem::path& file = files.files[face];
+        const auto check = [&](int width, int height) {
+            if (face == 0 || width != height || width == size) return fault_of_face(width, height);
+            return "the size is " + size_text(width, height) + " pixels; that of " + files.files[0].string() + " is " +
+                   size_text(size, size);
+        };
+        ImageFile image = read_image_file(file, check, {0.15 * face, 0.15 * (face + 1)}, progress);
+        if (face > 0 && image.primaries != map.primaries)
+            fail(file, "the primaries are " + image.primaries + "; those of " + files.files[0].string() + " are " +
+                           map.primaries);
+        take_facts(image, map, progress);
+        size = image.width;
+        map.pixels.reserve(std::size_t(cube_faces) * size * size);
+        map.pixels.insert(map.pixels.end(), image.pixels.begin(), image.pixels.end());
+    }
+    become_cube(map, size);
+    return map;
+}
+
+}  // namespace
+
+std::string fault_of_size(const std::string& requested, int width, int height) {
+    const std::string_view found = layout_of_shape(width, height);
+    const std::string size = size_text(width, height) + " pixels";
+    if (found.empty()) return "the size is " + size + ", the shape of no layout; known are " + known_shapes();
+    if (requested != "auto" && requested != found)
+        return "the size is " + size + ", the shape of layout " + std::string(found) + " and not of " + requested +
+               "; known are " + known_shapes();
+    const CubeLayout* layout = find_cube_layout(found);
+    if (!layout && width > widest_latlong)
+        return "the declared size is " + size + "; allowed is up to " + size_text(widest_latlong, widest_latlong / 2);
+    if (layout && (width / layout->columns > largest_face || std::int64_t(width) * height > most_pixels))
+        return "the declared size is " + size + ", faces of " + std::to_string(width / layout->columns) +
+               "; allowed are faces up to " + std::to_string(largest_face) + " and " + std::to_string(most_pixels) +
+               " pixels";
+    return {};
+}
+
+EnvironmentMap assemble_environment(const EnvironmentFiles& files, const std::string& requested, Progress& progress) {
+    return files.faces() ? read_faces(files, requested, progress)
+                         : read_one_picture(files.files[0], requested, progress);
+}
+
+}  // namespace hairbake

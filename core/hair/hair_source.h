@@ -1,0 +1,40 @@
+// What the readers of hair files share: bytes at an offset, refusals, checks of numbers. Private to the readers.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/hair/hair_model.h"
+
+namespace hairbake {
+
+/// Throws Error(bad_input): "<name>: <what>".
+[[noreturn]] void refuse_hair(const std::string& name, const std::string& what);
+
+/// The bytes of a hair file. `copy(offset, to, n)` copies n bytes from `offset`, or throws when there are fewer.
+struct HairSource {
+    std::string name;  ///< for messages
+    std::uint64_t size = 0;
+    std::function<void(std::uint64_t offset, void* to, std::size_t n)> copy;
+
+    /// `count` values from `offset` on. The caller has checked that the file holds them.
+    template <class T>
+    std::vector<T> array(std::uint64_t offset, std::size_t count) const {
+        std::vector<T> values(count);
+        if (count > 0) copy(offset, values.data(), count * sizeof(T));
+        return values;
+    }
+};
+
+/// Throws Error(bad_input) naming strand and vertex unless every number of the model that counts is finite and every
+/// coordinate at most 1e18 in magnitude.
+void check_numbers(const std::string& name, const HairModel& model);
+
+/// The readers of the single formats. Errors as read_hair() says.
+HairModel read_hair_format(const HairSource& source);
+HairModel read_tfx_format(const HairSource& source);
+
+}  // namespace hairbake

@@ -1,0 +1,24 @@
+// Irradiance maps as DDS cube maps with all mip levels: what Unreal and Godot take.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/irradiance/irradiance_maps.h"
+#include "core/output/file_sink.h"
+
+namespace hairbake {
+
+/// diffuse.dds and specular_00.dds ... : one cube map a file, as Unreal and Godot read no arrays of them. DX10 header,
+/// DXGI_FORMAT_R16G16B16A16_FLOAT, linear, alpha 1; faces +X -X +Y -Y +Z -Z, rows from the top, each face followed by
+/// its mip levels down to 1x1 (cube_mips.h; made of floats, then rounded). A tangent's look-up wants level 0: set the
+/// texture to it, or the card blurs between neighbouring strands.
+///
+/// The format has no place for text: exponent, theta' and scale (half.h: the value is what is stored times the scale)
+/// stand in the manifest alone. Throws Error(bad_input) for maps that are not finite, Error(cancelled) between files,
+/// and what FileSink throws.
+std::vector<WrittenFile> write_map_dds(const IrradianceMaps& maps, const std::filesystem::path& folder,
+                                       Progress& progress);
+
+}  // namespace hairbake

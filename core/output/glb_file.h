@@ -1,0 +1,32 @@
+// The hair as lines with its transmittance: a binary glTF 2.0 file, written by tinygltf.
+#pragma once
+
+#include <filesystem>
+
+#include "core/hair/hair_model.h"
+#include "core/output/file_sink.h"
+#include "core/volume/transmittance.h"
+
+namespace hairbake {
+
+/// hair.glb: one scene, node, mesh and primitive with the attributes
+///     POSITION        float32 VEC3   the model's own unit and vertex order; glTF means metres, nothing is scaled
+///     _TANGENT        float32 VEC3   unit, root to tip (tangents.h); glTF's TANGENT is a VEC4 of surfaces
+///     _TRANSMITTANCE  float32 SCALAR A in [0, 1]
+///     _TRANSMITTANCE_SH_0 ... _TRANSMITTANCE_SH_15  float32 SCALAR, bands^2 of them, with sh_bands: l*l + l + m
+///     _BENT_CONE      float32 VEC4   unit axis and half-angle in radians, with bent_cone
+/// The primitive is of mode LINES (1) with uint32 indices that walk each strand, two a segment, strand by strand from
+/// root to tip: mode LINE_STRIP would need a primitive for each strand, as glTF forbids to restart a strip, and viewers
+/// make an object and a draw call of each of 50,000 primitives. A strand ends where a pair does not begin with the
+/// index at which the pair before ended. A model without any segment is of mode POINTS without indices; one without
+/// vertices is a file with an empty scene. The mesh's extras say strands, units and frame; asset.generator names
+/// hairbake.
+///
+/// Throws what check_glb_size throws, Error(internal) with tinygltf's words, and what FileSink throws.
+WrittenFile write_glb(const HairModel& model, const Transmittance& transmittance, const std::filesystem::path& folder);
+
+/// Throws Error(bad_input) when the file would be larger than the 4 GiB that the format can express: from about 119
+/// million vertices on without spherical harmonics and bent cone. Takes no memory, so it can be asked before the bake.
+void check_glb_size(std::uint64_t vertices, std::uint64_t strands, int sh_bands, bool bent_cone);
+
+}  // namespace hairbake

@@ -1,0 +1,37 @@
+// Half floats (IEEE binary16), what graphics cards read: 11 bits, up to 65,504, normal from 2^-14.
+//
+// Radiance goes beyond both ends, so halves are stored with a scale, a power of two that costs no precision: the value
+// is what is stored times the scale. Everything here is thread-safe.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/irradiance/irradiance_maps.h"
+
+namespace hairbake {
+
+/// The bits of a half float; files hold them little-endian.
+using Half = std::uint16_t;
+using Half4 = std::array<Half, 4>;
+
+constexpr float largest_half = 65504;
+
+/// The half nearest to `value`, of two equally near the even one. Infinite above 65,520, NaN for NaN.
+Half to_half(float value);
+
+/// The scale for values up to `largest` in magnitude. It is 1 where halves hold them well as they are, for `largest`
+/// from 1/16 to 65,504 and for 0: then who does not look at the scale is right too, and a value 2^10 times smaller than
+/// the largest still has all bits. Otherwise the power of two that takes `largest` into (32752, 65504], but never below
+/// 2^-126 (a reader's float). Throws Error(bad_input) when `largest` is not finite.
+double half_scale(double largest);
+
+/// One scale for all maps of a bake, so that a shader knows one number. Throws Error(bad_input) naming the map, face,
+/// row and column of a value that is not finite.
+double half_scale(const IrradianceMaps& maps);
+
+/// RGBA with alpha 1 (RGB alone is no texture format that can be relied upon), value / scale, in the order of `texels`.
+std::vector<Half4> to_half_texels(const CubeTexels& texels, double scale);
+
+}  // namespace hairbake

@@ -1,0 +1,70 @@
+#include "core/output/raw_maps.h"
+
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "core/output/half.h"
+#include "core/output/map_metadata.h"
+
+namespace hairbake {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json list_of_maps(const IrradianceMaps& maps, std::size_t bytes) {
+    Json list = Json::array();
+    list.push_back({{"name", "diffuse"}, {"offset", 0}, {"bytes", bytes}});
+    for (std::size_t m = 0; m < maps.specular.size(); ++m)
+        list.push_back({{"name", "specular"},
+                        {"theta_prime_deg", theta_prime_degrees(maps, m)},
+                        {"offset", (m + 1) * bytes},
+                        {"bytes", bytes}});
+    return list;
+}
+
+Json description(const IrradianceMaps& maps, const std::string& primaries, double scale) {
+    const auto n = static_cast<std::size_t>(maps.face_size);
+    Json page{{"content", "hairbake irradiance maps"},
+              {"file", "maps.f16"},
+              {"type", "float16"},
+              {"byte_order", "little"},
+              {"shape", {maps.specular.size() + 1, cube_faces, n, n, 4}},
+              {"face_size", n},
+              {"channels", "RGBA"}};
+    page["faces"] = Json::array();
+    for (int face = 0; face < cube_faces; ++face) page["faces"].push_back(std::string(cube_face_name(face)));
+    page["rows"] = "from the top";
+    page["scale"] = scale;
+    page["exponent"] = maps.exponent;
+    for (const auto& [key, value] : map_metadata(maps, "all"))
+        if (key == "hairbake:model" || key == "hairbake:units" || key == "hairbake:frame")
+            page[key.substr(key.find(':') + 1)] = value;
+    page["primaries"] = primaries;
+    page["maps"] = list_of_maps(maps, cube_faces * n * n * sizeof(Half4));
+    return page;
+}
+
+}  // namespace
+
+std::vector<WrittenFile> write_map_raw(const IrradianceMaps& maps, const std::string& primaries,
+                                       const std::filesystem::path& folder, Progress& progress) {
+    const double scale = half_scale(maps);
+    FileSink texels(folder / "maps.f16");
+    texels.write(std::as_bytes(std::span<const Half4>(to_half_texels(maps.diffuse, scale))));
+    for (const CubeTexels& map : maps.specular) {
+        progress.check();
+        texels.write(std::as_bytes(std::span<const Half4>(to_half_texels(map, scale))));
+    }
+    FileSink json(folder / "maps.json");
+    const Json page = description(maps, primaries, scale);
+    json.write(page.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+
+    std::vector<WrittenFile> files{texels.finish(), json.finish()};
+    files[0].shape = page["shape"].get<std::vector<std::size_t>>();
+    files[0].content = "diffuse and specular maps: half floats, RGBA; maps.json tells the layout";
+    files[0].scale = scale;
+    files[1].content = "layout and meaning of maps.f16";
+    return files;
+}
+
+}  // namespace hairbake

@@ -1,0 +1,59 @@
+// Maps that hold the labelled cube: whichever file they are read back from, each direction shows its own label.
+#include <gtest/gtest.h>
+
+#include "core/environment/environment_reader.h"
+#include "core/output/map_files.h"
+#include "tests/core/output/small_result.h"
+#include "tests/support/labelled_cube.h"
+#include "tests/support/temporary_folder.h"
+
+namespace hairbake {
+namespace {
+
+using test_support::TemporaryFolder;
+
+IrradianceMaps labelled_maps(int size) {
+    IrradianceMaps maps = *test_support::small_result().irradiance;
+    maps.face_size = size;
+    maps.diffuse = labelled_cube(size);
+    for (CubeTexels& specular : maps.specular) specular = maps.diffuse;
+    return maps;
+}
+
+// Faces' lower middles, edges and corners, away from where colours change (labelled_cube.h).
+void expect_labelled(const EnvironmentMap& map) {
+    for (int axis = 0; axis < 3; ++axis)
+        for (const double sign : {1.0, -1.0})
+            for (const double u : {-0.9, 0.0, 0.9})
+                for (const double v : {-0.9, 0.0, 0.9}) {
+                    Vec3d d;
+                    d[axis] = sign;
+                    d[(axis + 1) % 3] = u;
+                    d[(axis + 2) % 3] = v;
+                    const MapPoint p = point_of(map, d);
+                    const int x = std::min(int(p.x), map.width - 1), y = std::min(int(p.y), map.height - 1);
+                    EXPECT_LT(length(map.pixels[std::size_t(y) * map.width + x] - labelled_colour(d)), 1e-6)
+                        << map.layout << ": " << d.x << ' ' << d.y << ' ' << d.z;
+                }
+}
+
+TEST(LabelledMaps, StripAndLatLongShowEveryDirectionItsOwnLabel) {
+    // The files of a result are themselves environments: the strip in the layout vertical_strip, the lat-long in the
+    // convention gltf, which `auto` and the default take them for.
+    const TemporaryFolder folder;
+    Progress progress;
+    const IrradianceMaps maps = labelled_maps(64);
+    write_map_exr(maps, folder / "", progress);
+    for (const char* name : {"diffuse", "specular_00"}) {
+        const EnvironmentMap strip = read_environment(folder / (std::string(name) + ".exr"), {}, progress);
+        EXPECT_EQ(strip.layout, "vertical_strip");
+        EXPECT_EQ(strip.pixels, maps.diffuse);
+        expect_labelled(strip);
+        const EnvironmentMap latlong = read_environment(folder / (std::string(name) + "_latlong.exr"), {}, progress);
+        EXPECT_EQ(latlong.layout, "latlong");
+        expect_labelled(latlong);
+    }
+}
+
+}  // namespace
+}  // namespace hairbake

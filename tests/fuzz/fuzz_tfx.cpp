@@ -1,0 +1,52 @@
+// Any bytes at all as a TressFX file: refused as bad input, or read, made into strands and written as HAIR.
+#include <cstdint>
+#include <cstdlib>
+#include <iostream>
+#include <sstream>
+
+#include "core/base/error.h"
+#include "core/hair/hair_file.h"
+#include "core/hair/strand_geometry.h"
+
+namespace {
+
+using namespace hairbake;
+
+void demand(bool ok, const char* what) {
+    if (ok) return;
+    std::cerr << "broken promise: " << what << "\n";
+    std::abort();
+}
+
+void check_model(const HairModel& model, std::size_t file_size) {
+    const std::size_t v = model.vertex_count();
+    demand(v <= file_size / 12, "no more points than the file has bytes for");
+    demand(model.strand_begin.front() == 0 && model.strand_begin.back() == v, "the strands cover the points");
+    demand(model.colors.empty() || model.colors.size() == v, "a colour for each point or none");
+    for (const Vec3f& p : model.positions) demand(is_finite(p), "positions are finite");
+
+    std::ostringstream written;
+    write_hair(model, written);
+    const HairModel again = read_hair(std::as_bytes(std::span(written.view())), "written.hair");
+    demand(again.positions == model.positions && again.strand_begin == model.strand_begin &&
+               again.colors == model.colors && again.info == model.info,
+           "the HAIR form holds the same model");
+
+    StrandSettings settings;
+    settings.width = 0.01;
+    const StrandGeometry strands = make_strand_geometry(model, settings);
+    demand(strands.segment_count == v - model.strand_count(), "a strand of n points has n - 1 segments");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    // Named .tfx, so that nothing but a HAIR file goes to another reader.
+    try {
+        check_model(read_hair(std::as_bytes(std::span(data, size)), "fuzz.tfx"), size);
+    } catch (const Error& error) {
+        demand(error.kind() == ErrorKind::bad_input, "an input's fault is bad_input");
+        demand(std::string_view(error.what()).starts_with("fuzz.tfx: "), "a refusal names the file");
+    }
+    return 0;
+}
