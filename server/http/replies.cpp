@@ -35,6 +35,8 @@ RangeAnswer read_range(const std::string& text, std::uint64_t bytes, Span& span)
     return RangeAnswer::part;
 }
 
+std::string quoted(const std::string& text) { return std::string(1, '"').append(text).append(1, '"'); }
+
 /// Whether the list of tags in If-None-Match names `tag` (weakly compared).
 bool names_tag(const std::string& list, const std::string& tag) {
     return list == "*" || list.find(tag) != std::string::npos;
@@ -49,7 +51,7 @@ HttpReply not_modified(const std::string& tag) {
 /// Status and headers of a reply with `bytes` bytes, and which of them it has.
 HttpReply ranged(const HttpRequest& request, std::uint64_t bytes, const std::string& digest, const std::string& type,
                  Span& span) {
-    const std::string tag = "\"" + digest + "\"";
+    const std::string tag = quoted(digest);
     span = {0, bytes};
     if (const auto list = request.header("If-None-Match"); list && names_tag(*list, tag)) {
         span = {};
@@ -91,7 +93,7 @@ HttpReply json_reply(int status, std::string json) {
 }
 
 HttpReply cached_json(const HttpRequest& request, std::string json) {
-    const std::string tag = "\"" + Digest().add(json).hex().substr(0, 32) + "\"";
+    const std::string tag = quoted(Digest().add(json).hex().substr(0, 32));
     if (const auto list = request.header("If-None-Match"); list && names_tag(*list, tag)) return not_modified(tag);
     return json_reply(200, std::move(json)).with("ETag", tag).with("Cache-Control", "no-cache");
 }

@@ -51,6 +51,10 @@ void Uploads::recover() {
         });
         if (!known) fs::remove(entry, ignored);
     }
+    database_.write([&](Sql& sql) {
+        for (const SqlRow& row : sql.rows("SELECT id FROM uploads"))
+            if (!fs::exists(folder_ / row.text(0))) sql.run("DELETE FROM uploads WHERE id = ?", {row.text(0)});
+    });
     expire();
 }
 

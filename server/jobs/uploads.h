@@ -30,7 +30,7 @@ public:
     Uploads(Database& database, BlobStore& store, std::filesystem::path folder, double lifetime_s,
             std::uint64_t most_bytes);
 
-    /// At boot: files without a row go.
+    /// At boot: files without a row go, and rows whose file has become a blob already.
     void recover();
     /// Removes what has expired.
     void expire();
