@@ -1,6 +1,7 @@
 // The steps of both stages one by one, for finding where time goes: bench_steps [Google Benchmark's flags].
 #include <benchmark/benchmark.h>
 
+#include <array>
 #include <cstdint>
 
 #include "core/base/progress.h"
@@ -77,11 +78,15 @@ BENCHMARK(lay_out_one_axis)->Unit(benchmark::kMillisecond)->UseRealTime();
 void sweep_four_directions(benchmark::State& state) {
     Groom& groom = Groom::get();
     const SliceLayout layout = make_slice_layout(groom.frame, groom.sorted, groom.bricks, 1, groom.progress);
-    const std::vector<Vec3d> directions{normalized(Vec3d(0.1, 1, 0.2)), normalized(Vec3d(-0.5, 1, 0.3)),
-                                        normalized(Vec3d(0.7, 1, -0.6)), normalized(Vec3d(-0.2, 1, -0.9))};
+    const std::vector<Vec3d> lights{normalized(Vec3d(0.1, 1, 0.2)), normalized(Vec3d(-0.5, 1, 0.3)),
+                                    normalized(Vec3d(0.7, 1, -0.6)), normalized(Vec3d(-0.2, 1, -0.9))};
+    const std::array<double, 4> weights{1, 0.5, 0.5, -0.5};  // the sums of A and of its near field are four
+    std::vector<SweepDirection> directions;
+    for (const Vec3d& l : lights) directions.push_back({l, weights});
     SweepScratch scratch;
-    SweepSums sums(layout.slot_vertex.size());
-    for (auto _ : state) sweep(layout, directions, sweep_scale(1 << 20), {}, scratch, sums);
+    SweepTotals totals;
+    totals.vertices = SweepSums(layout.slot_vertex.size(), weights.size());
+    for (auto _ : state) sweep(layout, nullptr, directions, sweep_scale(1 << 20), {}, scratch, totals);
     per_vertex(state, 4);
 }
 BENCHMARK(sweep_four_directions)->Unit(benchmark::kMillisecond)->UseRealTime();

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ostream>
 
 #include "core/base/error.h"
 #include "core/base/random.h"
@@ -50,6 +51,7 @@ struct Container {
     std::string name;
     std::vector<WrittenFile> (*write)(const IrradianceMaps&, const std::filesystem::path&, Progress&);
 };
+void PrintTo(const Container& container, std::ostream* stream) { *stream << container.name; }
 
 std::vector<WrittenFile> ktx2(const IrradianceMaps& maps, const std::filesystem::path& folder, Progress& progress) {
     return write_map_ktx2(maps, "Rec.2020", folder, progress);

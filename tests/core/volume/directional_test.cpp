@@ -161,8 +161,11 @@ TEST(Directional, ALoneStrandSeesTheWholeSky) {
 }
 
 TEST(Directional, TurnsWithTheModel) {
-    // Turned model, turned coefficients. The grid's voxels and the 400 directions lie otherwise then: A itself changes
-    // by 0.01 (RMS; transmittance_test.cpp), which is 0.035 in c_0 and by Parseval as much in other coefficients.
+    // Turned model, turned coefficients. Voxels and directions lie otherwise then, so both bakes err independently. The
+    // volume method errs by up to 0.016 in A (RMS, README's table; these strands are as wide as its widest, w/h =
+    // 0.27): the two differ by up to 0.023, which is 0.08 in c_0 = 2 sqrt(pi) A, and in no other coefficient is it
+    // more: an error of T at single directions is spread evenly over all coefficients, one common to all is in c_0
+    // alone. A turn the wrong way would differ by sqrt(2) times the coefficients' size.
     const StrandModel model = lopsided_ball();
     const Matrix3 turn = rotation_matrix({25, 140, -70});
     const StrandGeometry straight_up = model.geometry(),
@@ -185,9 +188,9 @@ TEST(Directional, TurnsWithTheModel) {
         norm += std::pow(std::sqrt(norm_a) - std::sqrt(norm_b), 2);
     }
     const double count = double(straight_up.vertex_count()) / 5;
-    EXPECT_GT(std::sqrt(size / count), 0.1) << "the test is too weak";
-    for (std::size_t i = 0; i < 9; ++i) EXPECT_LT(std::sqrt(square[i] / count), 0.04) << i;
-    EXPECT_LT(std::sqrt(norm / count), 0.05);  // the length of band 1 does not change
+    EXPECT_GT(std::sqrt(size / count), 3 * 0.08) << "the test is too weak";
+    for (std::size_t i = 0; i < 9; ++i) EXPECT_LT(std::sqrt(square[i] / count), 0.08) << i;
+    EXPECT_LT(std::sqrt(norm / count), 0.08);  // the length of band 1 does not change
 }
 
 TEST(Directional, GivesTheSameBitsForAnyNumberOfThreads) {

@@ -1,0 +1,26 @@
+// Counts for /metrics, in the text form of Prometheus.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "server/jobs/service.h"
+
+namespace hairbake {
+
+/// Thread-safe.
+class Metrics {
+public:
+    Metrics();
+    ~Metrics();
+
+    /// After each request.
+    void count(const std::string& method, int status, double seconds);
+    std::string text(const Service::Counts& counts);
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace hairbake

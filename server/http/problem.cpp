@@ -1,0 +1,114 @@
+#include "server/http/problem.h"
+
+#include <spdlog/spdlog.h>
+
+#include <new>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "server/jobs/service.h"
+
+namespace hairbake {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* title_of(int status) {
+    switch (status) {
+        case 400:
+            return "Malformed request";
+        case 401:
+            return "A token is needed";
+        case 403:
+            return "Not allowed";
+        case 404:
+            return "Not found";
+        case 405:
+            return "Method not allowed";
+        case 409:
+            return "Conflict";
+        case 411:
+            return "Length required";
+        case 412:
+            return "Precondition failed";
+        case 413:
+            return "Too large";
+        case 414:
+            return "Address too long";
+        case 415:
+            return "Unsupported media type";
+        case 416:
+            return "Range not satisfiable";
+        case 422:
+            return "Not acceptable as it is";
+        case 501:
+            return "Not implemented";
+        case 503:
+            return "Busy";
+        case 507:
+            return "The store is full";
+        default:
+            return "Internal error";
+    }
+}
+
+HttpReply problem_of(const Refusal& refusal) {
+    switch (refusal.why()) {
+        case Refused::malformed:
+            return problem(400, "malformed", refusal.what(), refusal.field());
+        case Refused::unprocessable:
+            return problem(422, "unprocessable", refusal.what(), refusal.field());
+        case Refused::not_found:
+            return problem(404, "not-found", refusal.what(), refusal.field());
+        case Refused::conflict:
+            return problem(409, "conflict", refusal.what(), refusal.field());
+        case Refused::too_large:
+            return problem(413, "too-large", refusal.what(), refusal.field());
+        case Refused::full:
+            return problem(507, "full", refusal.what(), refusal.field());
+        default:
+            return problem(503, "busy", refusal.what(), refusal.field()).with("Retry-After", "5");
+    }
+}
+
+}  // namespace
+
+HttpReply problem(int status, const std::string& slug, const std::string& detail, const std::string& field) {
+    Json body{
+        {"type", "urn:hairbake:problem:" + slug}, {"title", title_of(status)}, {"status", status}, {"detail", detail}};
+    if (!field.empty()) body["field"] = field;
+    HttpReply reply;
+    reply.status = status;
+    reply.type = "application/problem+json";
+    reply.body = body.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return reply;
+}
+
+HttpReply problem_of_status(int status) {
+    // The library answers 416 for a Range that it cannot parse, before the size of anything is known.
+    if (status == 416) return problem(400, "malformed", "the header Range cannot be read", "Range");
+    if (status == 414) return problem(414, "too-large", "the address is longer than 8192 bytes");
+    if (status == 413) return problem(413, "too-large", "the body is longer than allowed");
+    if (status < 500) return problem(status, "malformed", "the request cannot be read");
+    return problem(status, "internal", "the request could not be handled");
+}
+
+HttpReply problem_of_current_exception() {
+    try {
+        throw;
+    } catch (const Refusal& refusal) {
+        return problem_of(refusal);
+    } catch (const Error& error) {
+        if (error.kind() == ErrorKind::out_of_resources) return problem(507, "full", error.what());
+        spdlog::error("a request failed: {}", error.what());
+    } catch (const std::bad_alloc&) {
+        return problem(503, "busy", "memory is short").with("Retry-After", "5");
+    } catch (const std::exception& error) {
+        spdlog::error("a request failed: {}", error.what());
+    } catch (...) {
+        spdlog::error("a request failed for an unknown reason");
+    }
+    return problem(500, "internal", "the request could not be handled; the daemon's log tells why");
+}
+
+}  // namespace hairbake

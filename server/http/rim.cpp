@@ -1,0 +1,312 @@
+#include "server/http/rim.h"
+
+#define CPPHTTPLIB_USE_POLL
+#define CPPHTTPLIB_LISTEN_BACKLOG 1024
+#include <httplib.h>
+#include <spdlog/spdlog.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <limits>
+#include <mutex>
+#include <thread>
+
+#include "core/base/error.h"
+#include "server/http/problem.h"
+#include "server/http/target.h"
+#include "server/jobs/service.h"
+
+namespace hairbake {
+namespace {
+
+constexpr int read_timeout_s = 30, write_timeout_s = 60, first_byte_timeout_s = 10;
+constexpr std::size_t most_refusals = 1024;
+const std::string any_path = "/";  // the library routes nothing: every request is made to look for this
+
+/// On the thread that answers what the queue has no room for.
+thread_local bool refusing = false;
+/// The current connection's request body was not read to its end.
+thread_local bool body_left = false;
+
+/// A fixed number of threads and a bounded queue. What finds the queue full is answered 503 by one more thread.
+class BoundedPool : public httplib::TaskQueue {
+public:
+    BoundedPool(int threads, int waiting) : waiting_(static_cast<std::size_t>(waiting)) {
+        for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { work(jobs_); });
+        threads_.emplace_back([this] {
+            refusing = true;
+            work(refusals_);
+        });
+    }
+
+    bool enqueue(std::function<void()> job) override {
+        {
+            const std::lock_guard lock(mutex_);
+            if (jobs_.size() < waiting_)
+                jobs_.push_back(std::move(job));
+            else if (refusals_.size() < most_refusals)
+                refusals_.push_back(std::move(job));
+            else
+                return false;  // the library closes the connection
+        }
+        changed_.notify_all();
+        return true;
+    }
+
+    void shutdown() override {
+        {
+            const std::lock_guard lock(mutex_);
+            ending_ = true;
+        }
+        changed_.notify_all();
+        threads_.clear();  // joins
+    }
+
+private:
+    void work(std::deque<std::function<void()>>& jobs) {
+        for (;;) {
+            std::unique_lock lock(mutex_);
+            changed_.wait(lock, [&] { return ending_ || !jobs.empty(); });
+            if (jobs.empty()) return;
+            const std::function<void()> job = std::move(jobs.front());
+            jobs.pop_front();
+            lock.unlock();
+            job();
+        }
+    }
+
+    const std::size_t waiting_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    bool ending_ = false;
+    std::deque<std::function<void()>> jobs_, refusals_;
+    std::vector<std::jthread> threads_;
+};
+
+void refuse_connection(socket_t connection) {
+    HttpReply busy = problem(503, "busy", "too many requests are waiting");
+    const std::string text = "HTTP/1.1 503 Service Unavailable\r\nContent-Type: " + busy.type +
+                             "\r\nContent-Length: " + std::to_string(busy.body.size()) +
+                             "\r\nRetry-After: 2\r\nConnection: close\r\n\r\n" + busy.body;
+    ::send(connection, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+}
+
+/// Reads away what a client still sends, for a moment, so that the reply is not lost in a connection reset.
+void linger(socket_t connection) {
+    ::shutdown(connection, SHUT_WR);
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+    char sink[65536];
+    for (std::size_t total = 0; total < (16u << 20) && std::chrono::steady_clock::now() < end;) {
+        pollfd ready{connection, POLLIN, 0};
+        if (::poll(&ready, 1, 100) < 0) return;
+        if (!ready.revents) continue;
+        const ssize_t count = ::recv(connection, sink, sizeof sink, MSG_DONTWAIT);
+        if (count <= 0) return;
+        total += static_cast<std::size_t>(count);
+    }
+}
+
+bool is_chunked(const httplib::Request& request) { return request.has_header("Transfer-Encoding"); }
+
+/// What is wrong with the head of a request, as a reply.
+std::optional<HttpReply> wrong_head(const httplib::Request& request) {
+    const auto refuse = [](const std::string& words) { return problem(400, "malformed", words); };
+    for (const auto& [name, value] : request.headers)
+        if (has_control_characters(name) || has_control_characters(value))
+            return refuse("a header has a control character");
+    const std::size_t lengths = request.get_header_value_count("Content-Length");
+    const std::size_t codings = request.get_header_value_count("Transfer-Encoding");
+    if (lengths + codings > 1) return refuse("the body's length is given more than once");
+    if (lengths && !read_length(request.get_header_value("Content-Length")))
+        return refuse("Content-Length is no number");
+    if (codings && request.get_header_value("Transfer-Encoding") != "chunked")
+        return problem(501, "malformed", "the only Transfer-Encoding is chunked");
+    const bool body = codings || (lengths && *read_length(request.get_header_value("Content-Length")) > 0);
+    if (body && request.method != "POST" && request.method != "PUT" && request.method != "PATCH")
+        return refuse("a " + request.method + " has no body here");
+    if (request.get_header_value_count("Host") != 1 && request.version == "HTTP/1.1")
+        return refuse("there is not exactly one Host header");
+    if (request.has_header("Content-Encoding") && request.get_header_value("Content-Encoding") != "identity")
+        return problem(415, "unsupported", "bodies are not taken compressed", "Content-Encoding");
+    if (request.get_header_value("Content-Type").starts_with("multipart/"))
+        return problem(415, "unsupported", "a body is one file or one JSON object", "Content-Type");
+    if (!read_target(request.target)) return refuse("the address is not a plain path");
+    return std::nullopt;
+}
+
+/// Feeds the body to `receiver`. The library only learns whether to go on.
+void read_body(const httplib::ContentReader& reader, const std::function<void(std::span<const std::byte>)>& receiver) {
+    std::exception_ptr failure;
+    const bool whole = reader([&](const char* data, std::size_t size) {
+        try {
+            receiver({reinterpret_cast<const std::byte*>(data), size});
+            return true;
+        } catch (...) {
+            failure = std::current_exception();
+            return false;
+        }
+    });
+    if (failure) std::rethrow_exception(failure);
+    if (!whole) throw Refusal(Refused::malformed, "the body ended early or its chunks are malformed");
+    body_left = false;
+}
+
+HttpRequest to_request(const httplib::Request& from, const httplib::ContentReader* reader) {
+    HttpRequest request;
+    request.method = from.method;
+    const Target target = *read_target(from.target);
+    request.path = target.path;
+    request.query = target.query;
+    if (from.has_header("Content-Length"))
+        request.content_length = read_length(from.get_header_value("Content-Length"));
+    request.has_body = is_chunked(from) || request.content_length.value_or(0) > 0;
+    request.header = [&from](const std::string& name) -> std::optional<std::string> {
+        if (!from.has_header(name)) return std::nullopt;
+        return from.get_header_value(name);
+    };
+    request.read_body = [reader](const std::function<void(std::span<const std::byte>)>& receiver) {
+        if (reader) read_body(*reader, receiver);
+    };
+    return request;
+}
+
+void send_file(httplib::Response& to, const FileBody& file, const std::string& type) {
+    to.set_content_provider(static_cast<std::size_t>(file.length), type,
+                            [file](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+                                static thread_local std::vector<char> piece(1 << 18);
+                                const ssize_t count =
+                                    ::pread(file.descriptor, piece.data(), std::min(length, piece.size()),
+                                            static_cast<off_t>(file.offset + offset));
+                                return count > 0 && sink.write(piece.data(), static_cast<std::size_t>(count));
+                            });
+}
+
+void fill(httplib::Response& to, const HttpReply& reply) {
+    to.status = reply.status;
+    for (const auto& [name, value] : reply.headers) to.set_header(name, value);
+    to.set_header("X-Content-Type-Options", "nosniff");
+    if (reply.file && reply.file->length > 0)
+        send_file(to, *reply.file, reply.type);
+    else if (!reply.body.empty())
+        to.set_content(reply.body, reply.type);
+}
+
+}  // namespace
+
+class Rim::Listener : public httplib::Server {
+public:
+    Listener(const RimSettings& settings, Rim::Handler handler) : handler_(std::move(handler)) {
+        new_task_queue = [settings] { return new BoundedPool(settings.threads, settings.waiting); };
+        set_keep_alive_max_count(1);
+        set_keep_alive_timeout(first_byte_timeout_s);
+        set_read_timeout(read_timeout_s, 0);
+        set_write_timeout(write_timeout_s, 0);
+        set_tcp_nodelay(true);
+        set_payload_max_length(std::numeric_limits<std::size_t>::max());  // routes count for themselves
+        // Not SO_REUSEPORT, with which two daemons would share a port.
+        set_socket_options([](socket_t listening) {
+            const int yes = 1;
+            ::setsockopt(listening, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+            ::fcntl(listening, F_SETFD, FD_CLOEXEC);
+        });
+        set_pre_routing_handler([](const httplib::Request& request, httplib::Response& response) {
+            body_left = request.has_header("Content-Length") || is_chunked(request);
+            const std::optional<HttpReply> wrong = wrong_head(request);
+            if (wrong) fill(response, *wrong);
+            return wrong ? HandlerResponse::Handled : HandlerResponse::Unhandled;
+        });
+        const auto plain = [this](const httplib::Request& request, httplib::Response& response) {
+            answer(request, nullptr, response);
+        };
+        const auto with_body = [this](const httplib::Request& request, httplib::Response& response,
+                                      const httplib::ContentReader& reader) { answer(request, &reader, response); };
+        Get(any_path, plain).Options(any_path, plain);
+        Post(any_path, with_body).Put(any_path, with_body).Patch(any_path, with_body).Delete(any_path, with_body);
+        set_exception_handler([](const httplib::Request&, httplib::Response& response, std::exception_ptr failure) {
+            try {
+                std::rethrow_exception(failure);
+            } catch (...) {
+                fill(response, problem_of_current_exception());
+            }
+        });
+        set_error_handler([](const httplib::Request&, httplib::Response& response) {
+            if (response.body.empty()) fill(response, problem_of_status(response.status));
+            return HandlerResponse::Unhandled;
+        });
+        set_post_routing_handler([](const httplib::Request&, httplib::Response& response) {
+            if (response.status == 204 || response.status == 304) response.headers.erase("Content-Length");
+            if (response.body.empty() || response.has_header("Content-Length")) return;
+            response.set_header("Content-Length",
+                                std::to_string(response.body.size()));  // errors of the library itself
+        });
+        set_expect_100_continue_handler([](const httplib::Request&, httplib::Response&) { return 100; });
+        bind(settings);
+    }
+
+    std::string address;
+
+private:
+    void bind(const RimSettings& settings) {
+        if (!settings.socket.empty()) {
+            ::unlink(settings.socket.c_str());  // of a daemon that was killed; the store's lock tells of one that lives
+            set_address_family(AF_UNIX);
+            if (!bind_to_port(settings.socket, 80))
+                throw Error(ErrorKind::usage, "cannot listen on the socket " + settings.socket);
+            ::chmod(settings.socket.c_str(), 0660);
+            address = "unix:" + settings.socket;
+            return;
+        }
+        int port = settings.port;
+        const bool bound =
+            port ? bind_to_port(settings.address, port) : (port = bind_to_any_port(settings.address)) > 0;
+        if (!bound)
+            throw Error(ErrorKind::usage,
+                        "cannot listen on " + settings.address + " port " + std::to_string(port) + "; is it in use?");
+        const bool six = settings.address.find(':') != std::string::npos;
+        address = "http://" + (six ? "[" + settings.address + "]" : settings.address) + ":" + std::to_string(port);
+    }
+
+    void answer(const httplib::Request& from, const httplib::ContentReader* reader, httplib::Response& to) {
+        HttpRequest request = to_request(from, reader);
+        fill(to, handler_(request));
+    }
+
+    bool process_and_close_socket(socket_t connection) override {
+        bool served = false;
+        body_left = false;
+        if (refusing) {
+            refuse_connection(connection);
+            body_left = true;
+        } else {
+            served = httplib::detail::process_server_socket(
+                svr_sock_, connection, 1, first_byte_timeout_s, read_timeout_s, 0, write_timeout_s, 0,
+                [&](httplib::Stream& stream, bool close, bool& closed) {
+                    return process_request(stream, "", 0, "", 0, close, closed, [](httplib::Request& request) {
+                        request.path = any_path;  // ours are in the target
+                        request.ranges.clear();   // likewise
+                    });
+                });
+        }
+        if (body_left) linger(connection);
+        httplib::detail::shutdown_socket(connection);
+        httplib::detail::close_socket(connection);
+        return served;
+    }
+
+    Rim::Handler handler_;
+};
+
+Rim::Rim(const RimSettings& settings, Handler handler)
+    : listener_(std::make_unique<Listener>(settings, std::move(handler))) {}
+Rim::~Rim() = default;
+
+std::string Rim::address() const { return listener_->address; }
+void Rim::serve() { listener_->listen_after_bind(); }
+void Rim::wait_until_serving() const { listener_->wait_until_ready(); }
+void Rim::stop() { listener_->stop(); }
+
+}  // namespace hairbake

@@ -1,0 +1,42 @@
+// The listening side. cpp-httplib is behind it and nowhere else.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "server/http/message.h"
+
+namespace hairbake {
+
+struct RimSettings {
+    std::string socket;  ///< path of a Unix socket; when empty, address and port hold
+    std::string address;
+    int port = 0;  ///< 0: any free one
+    int threads = 16, waiting = 256;
+};
+
+/// One request a connection. What is malformed (framing, paths, control characters, encodings) is answered here with
+/// problem+json and reaches no route. Thread-safe.
+class Rim {
+public:
+    using Handler = std::function<HttpReply(HttpRequest&)>;
+
+    /// Binds. Throws Error(usage) when the place is taken or not allowed.
+    Rim(const RimSettings& settings, Handler handler);
+    ~Rim();
+
+    /// "http://127.0.0.1:8080" or "unix:/run/hairbaked.sock".
+    std::string address() const;
+    /// Serves until stop() is called from another thread.
+    void serve();
+    /// Returns once serve() accepts connections in another thread; from then on stop() works.
+    void wait_until_serving() const;
+    void stop();
+
+private:
+    class Listener;
+    std::unique_ptr<Listener> listener_;
+};
+
+}  // namespace hairbake

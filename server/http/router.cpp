@@ -1,0 +1,108 @@
+#include "server/http/router.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "server/http/problem.h"
+#include "server/jobs/service.h"
+
+namespace hairbake {
+namespace {
+
+using Parameters = std::map<std::string, std::string>;
+
+/// What the pattern's {…} stand for, when it fits.
+std::optional<Parameters> match(const std::string& pattern, const std::vector<std::string>& path) {
+    Parameters parameters;
+    std::size_t segment = 0;
+    for (std::size_t begin = 1; begin < pattern.size();) {
+        const std::size_t end = std::min(pattern.find('/', begin), pattern.size());
+        const std::string part = pattern.substr(begin, end - begin);
+        if (segment == path.size()) return std::nullopt;
+        if (part.ends_with("...}")) {
+            std::string rest;
+            for (; segment < path.size(); ++segment) rest += (rest.empty() ? "" : "/") + path[segment];
+            parameters[part.substr(1, part.size() - 5)] = rest;
+        } else if (part.starts_with("{")) {
+            parameters[part.substr(1, part.size() - 2)] = path[segment++];
+        } else if (part != path[segment++]) {
+            return std::nullopt;
+        }
+        begin = end + 1;
+    }
+    if (segment != path.size()) return std::nullopt;
+    return parameters;
+}
+
+/// The methods of all rows that fit the path, for Allow.
+std::string allowed_methods(const std::vector<Route>& routes, const std::vector<std::string>& path) {
+    std::string list = "OPTIONS";
+    const auto add = [&](const std::string& method) {
+        if (list.find(method) == std::string::npos) list += ", " + method;
+    };
+    for (const Route& route : routes) {
+        if (!match(route.pattern, path)) continue;
+        add(route.method);
+        if (route.method == "GET") add("HEAD");
+    }
+    return list;
+}
+
+const Route* find(const std::vector<Route>& routes, HttpRequest& request, const std::string& method) {
+    for (const Route& route : routes) {
+        if (route.method != method) continue;
+        if (auto parameters = match(route.pattern, request.path)) {
+            request.parameters = std::move(*parameters);
+            return &route;
+        }
+    }
+    return nullptr;
+}
+
+}  // namespace
+
+HttpReply Router::answer_or_throw(HttpRequest& request) const {
+    const Route* route = find(routes_, request, request.method);
+    if (!route && request.method == "HEAD") route = find(routes_, request, "GET");
+    if (!route) {
+        const std::string allowed = allowed_methods(routes_, request.path);
+        if (allowed == "OPTIONS") return problem(404, "not-found", "there is nothing at this address");
+        if (request.method != "OPTIONS")
+            return problem(405, "method-not-allowed",
+                           request.method + " is not for this address; allowed is " + allowed)
+                .with("Allow", allowed);
+        HttpReply reply;
+        reply.status = 204;
+        return reply.with("Allow", allowed);
+    }
+    access_.check(request, route->scope);
+    if (request.has_body && route->body_limit == 0) throw Refusal(Refused::too_large, "no body is taken here");
+    if (request.content_length.value_or(0) > route->body_limit)
+        throw Refusal(Refused::too_large, "the body is " + std::to_string(*request.content_length) +
+                                              " bytes long; allowed is up to " + std::to_string(route->body_limit));
+    // Whatever a handler reads is counted here, so that none can forget to.
+    const auto read = request.read_body;
+    request.read_body = [read,
+                         limit = route->body_limit](const std::function<void(std::span<const std::byte>)>& receiver) {
+        std::uint64_t total = 0;
+        read([&](std::span<const std::byte> bytes) {
+            total += bytes.size();
+            if (total > limit)
+                throw Refusal(Refused::too_large, "the body is longer than " + std::to_string(limit) + " bytes");
+            receiver(bytes);
+        });
+    };
+    return route->handle(request);
+}
+
+HttpReply Router::answer(HttpRequest& request) const {
+    try {
+        return answer_or_throw(request);
+    } catch (const Denied& denied) {
+        return denied.reply();
+    } catch (...) {
+        return problem_of_current_exception();
+    }
+}
+
+}  // namespace hairbake

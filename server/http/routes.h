@@ -1,0 +1,23 @@
+// All routes of the service, one function a group.
+#pragma once
+
+#include <vector>
+
+#include "server/http/metrics.h"
+#include "server/http/router.h"
+#include "server/jobs/service.h"
+
+namespace hairbake {
+
+std::vector<Route> input_routes(Service& service);   ///< blobs, models, environments, names
+std::vector<Route> bake_routes(Service& service);    ///< bakes, rebakes, batches
+std::vector<Route> upload_routes(Service& service);  ///< tus
+std::vector<Route> service_routes(Service& service, Access& access, Metrics& metrics);  ///< health, version, session
+
+std::vector<Route> all_routes(Service& service, Access& access, Metrics& metrics);
+
+/// A query's number in [low, high], or `otherwise`. Throws Refusal(unprocessable).
+std::int64_t number_in_query(const HttpRequest& request, const std::string& name, std::int64_t low, std::int64_t high,
+                             std::int64_t otherwise);
+
+}  // namespace hairbake

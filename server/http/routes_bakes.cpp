@@ -1,0 +1,78 @@
+#include <set>
+
+#include "server/http/replies.h"
+#include "server/http/routes.h"
+
+namespace hairbake {
+namespace {
+
+constexpr std::uint64_t request_limit = 1 << 20, rebake_limit = 16 << 20;
+
+/// Digests may be written with or without "sha256:".
+std::string text_in_query(const HttpRequest& request, const std::string& name) {
+    const auto found = request.query.find(name);
+    if (found == request.query.end()) return {};
+    return found->second.starts_with("sha256:") ? found->second.substr(7) : found->second;
+}
+
+HttpReply post_bake(Service& service, HttpRequest& request) {
+    const Service::Answer answer = service.submit(read_text(request));
+    return json_reply(answer.state == "done" ? 200 : 202, answer.json).with("Location", "/v1/bakes/" + answer.id);
+}
+
+HttpReply list_bakes(Service& service, HttpRequest& request) {
+    static const std::set<std::string> states{"", "queued", "running", "done", "failed", "cancelled"};
+    BakeFilter filter;
+    filter.state = text_in_query(request, "state");
+    if (!states.count(filter.state))
+        throw Refusal(Refused::unprocessable, "state is none of queued, running, done, failed, cancelled", "state");
+    filter.model = text_in_query(request, "model");
+    filter.environment = text_in_query(request, "environment");
+    filter.name = text_in_query(request, "name");
+    filter.batch = text_in_query(request, "batch");
+    filter.limit = static_cast<int>(number_in_query(request, "limit", 1, 1000, 50));
+    filter.cursor = number_in_query(request, "cursor", 0, INT64_MAX, INT64_MAX);
+    return cached_json(request, service.bakes().list(filter));
+}
+
+HttpReply get_file(Service& service, HttpRequest& request) {
+    const BakeFile file = service.bakes().file(request.parameters.at("id"), request.parameters.at("name"));
+    const std::string type = media_type(file.name);
+    if (!file.blob) return text_reply(request, file.text, file.etag, type);
+    OpenBlob blob = service.open_blob(*file.blob);
+    return file_reply(request, std::move(blob.file), blob.bytes, file.etag, type);
+}
+
+HttpReply post_rebake(Service& service, HttpRequest& request) {
+    const auto dry = request.query.find("dry_run");
+    const bool dry_run = dry != request.query.end() && dry->second != "0";
+    const std::string answer = service.batches().rebake(read_text(request), dry_run);
+    if (dry_run) return json_reply(200, answer);
+    const std::size_t id = answer.find("\"id\":\"") + 6;
+    return json_reply(202, answer).with("Location", "/v1/batches/" + answer.substr(id, answer.find('"', id) - id));
+}
+
+}  // namespace
+
+std::vector<Route> bake_routes(Service& service) {
+    const auto bound = [&service](HttpReply (*handle)(Service&, HttpRequest&)) {
+        return [&service, handle](HttpRequest& request) { return handle(service, request); };
+    };
+    return {
+        {"POST", "/v1/bakes", Scope::bake, request_limit, bound(post_bake)},
+        {"GET", "/v1/bakes", Scope::read, 0, bound(list_bakes)},
+        {"GET", "/v1/bakes/{id}", Scope::read, 0,
+         [&service](HttpRequest& r) { return cached_json(r, service.bakes().get(r.parameters.at("id"))); }},
+        {"DELETE", "/v1/bakes/{id}", Scope::bake, 0,
+         [&service](HttpRequest& r) {
+             service.queue().cancel(r.parameters.at("id"));
+             return json_reply(200, service.bakes().get(r.parameters.at("id")));
+         }},
+        {"GET", "/v1/bakes/{id}/files/{name}", Scope::read, 0, bound(get_file)},
+        {"POST", "/v1/rebakes", Scope::bake, rebake_limit, bound(post_rebake)},
+        {"GET", "/v1/batches/{id}", Scope::read, 0,
+         [&service](HttpRequest& r) { return cached_json(r, service.batches().get(r.parameters.at("id"))); }},
+    };
+}
+
+}  // namespace hairbake

@@ -1,0 +1,150 @@
+#include <nlohmann/json.hpp>
+
+#include "server/http/problem.h"
+#include "server/http/replies.h"
+#include "server/http/routes.h"
+
+namespace hairbake {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr std::uint64_t json_limit = 64 << 10;
+
+/// Streams the body into the store. Returns its digest and whether it is new.
+std::pair<std::string, bool> receive_blob(Service& service, const HttpRequest& request, const std::string& expected) {
+    const std::unique_ptr<IncomingFile> file = service.receive(request.content_length.value_or(0));
+    request.read_body([&](std::span<const std::byte> bytes) { file->add(bytes); });
+    const bool fresh = service.store_blob(*file, expected);
+    return {file->digest(), fresh};
+}
+
+void check_digest(const std::string& digest) {
+    if (!is_digest(digest))
+        throw Refusal(Refused::unprocessable, "a digest is 64 lower-case hexadecimal digits of SHA-256", "sha256");
+}
+
+HttpReply put_blob(Service& service, HttpRequest& request) {
+    const std::string digest = request.parameters.at("sha256");
+    check_digest(digest);
+    const bool fresh = receive_blob(service, request, digest).second;
+    return json_reply(fresh ? 201 : 200, Json{{"sha256", digest}, {"bytes", *service.blob_size(digest)}}.dump())
+        .with("Location", "/v1/blobs/" + digest);
+}
+
+HttpReply get_blob(Service& service, HttpRequest& request) {
+    const std::string digest = request.parameters.at("sha256");
+    check_digest(digest);
+    OpenBlob blob = service.open_blob(digest);
+    return file_reply(request, std::move(blob.file), blob.bytes, digest, "application/octet-stream");
+}
+
+/// The digest that the JSON body names.
+std::string digest_in(const HttpRequest& request) {
+    const Json body = Json::parse(read_text(request), nullptr, false);
+    if (!body.is_object() || body.size() != 1 || !body.contains("sha256") || !body["sha256"].is_string())
+        throw Refusal(Refused::unprocessable, "the body is not {\"sha256\": \"...\"} of a stored blob", "sha256");
+    std::string digest = body["sha256"].get<std::string>();
+    if (digest.starts_with("sha256:")) digest.erase(0, 7);
+    check_digest(digest);
+    return digest;
+}
+
+/// By digest when the body is JSON, else the body is the file itself.
+HttpReply add_input(Service& service, HttpRequest& request, const std::string& kind) {
+    const std::string type = request.header("Content-Type").value_or("");
+    std::string digest;
+    if (type.starts_with("application/json")) {
+        if (request.content_length.value_or(UINT64_MAX) > json_limit)
+            throw Refusal(Refused::too_large,
+                          "a JSON body has a length, of at most " + std::to_string(json_limit) + " bytes");
+        digest = digest_in(request);
+    } else if (type == "application/octet-stream") {
+        digest = receive_blob(service, request, "").first;
+    } else {
+        return problem(415, "unsupported", "allowed is application/json with a digest, or application/octet-stream",
+                       "Content-Type");
+    }
+    const Catalog::Added added = service.catalog().add(kind, digest);
+    return json_reply(added.known ? 200 : 201, added.answer).with("Location", "/v1/" + kind + "s/" + digest);
+}
+
+HttpReply get_thumbnail(Service& service, HttpRequest& request, const std::string& kind) {
+    const std::string digest = service.catalog().thumbnail(kind, request.parameters.at("sha256"));
+    OpenBlob blob = service.open_blob(digest);
+    return file_reply(request, std::move(blob.file), blob.bytes, digest, "image/png");
+}
+
+HttpReply put_name(Service& service, HttpRequest& request) {
+    const Json body = Json::parse(read_text(request), nullptr, false);
+    const bool good = body.is_object() && body.contains("sha256") && body["sha256"].is_string() &&
+                      (!body.contains("note") || body["note"].is_string()) && body.size() == 1u + body.contains("note");
+    if (!good)
+        throw Refusal(Refused::unprocessable, "the body is not {\"sha256\": \"...\", \"note\": \"...\"}", "sha256");
+    std::string answer;
+    service.database().write([&](Sql& sql) {
+        answer = Names::put(sql, request.parameters.at("kind"), request.parameters.at("path"),
+                            body["sha256"].get<std::string>(), body.value("note", ""), request.caller);
+    });
+    return json_reply(200, answer);
+}
+
+HttpReply get_name(Service& service, HttpRequest& request) {
+    std::string answer;
+    service.database().read(
+        [&](Sql& sql) { answer = Names::get(sql, request.parameters.at("kind"), request.parameters.at("path")); });
+    return cached_json(request, answer);
+}
+
+HttpReply list_names(Service& service, HttpRequest& request) {
+    const auto limit = static_cast<int>(number_in_query(request, "limit", 1, 1000, 100));
+    const auto cursor = request.query.find("cursor");
+    std::string answer;
+    service.database().read([&](Sql& sql) {
+        answer =
+            Names::list(sql, request.parameters.at("kind"), cursor == request.query.end() ? "" : cursor->second, limit);
+    });
+    return cached_json(request, answer);
+}
+
+/// The routes of models or of environments.
+void add_catalog(std::vector<Route>& routes, Service& service, const std::string& kind) {
+    const std::string base = "/v1/" + kind + "s", one = base + "/{sha256}";
+    routes.push_back({"POST", base, Scope::upload, service.settings().blob_bytes,
+                      [&service, kind](HttpRequest& r) { return add_input(service, r, kind); }});
+    routes.push_back({"GET", base, Scope::read, 0, [&service, kind](HttpRequest& r) {
+                          const auto limit = static_cast<int>(number_in_query(r, "limit", 1, 200, 50));
+                          const std::int64_t cursor = number_in_query(r, "cursor", 0, INT64_MAX, INT64_MAX);
+                          return cached_json(r, service.catalog().list(kind, cursor, limit));
+                      }});
+    routes.push_back({"GET", one, Scope::read, 0, [&service, kind](HttpRequest& r) {
+                          return cached_json(r, service.catalog().get(kind, r.parameters.at("sha256")));
+                      }});
+    routes.push_back({"GET", one + "/thumbnail.png", Scope::read, 0,
+                      [&service, kind](HttpRequest& r) { return get_thumbnail(service, r, kind); }});
+    routes.push_back({"DELETE", one, Scope::upload, 0, [&service, kind](HttpRequest& r) {
+                          service.catalog().remove(kind, r.parameters.at("sha256"));
+                          HttpReply reply;
+                          reply.status = 204;
+                          return reply;
+                      }});
+}
+
+}  // namespace
+
+std::vector<Route> input_routes(Service& service) {
+    const auto bound = [&service](HttpReply (*handle)(Service&, HttpRequest&)) {
+        return [&service, handle](HttpRequest& request) { return handle(service, request); };
+    };
+    std::vector<Route> routes{
+        {"PUT", "/v1/blobs/{sha256}", Scope::upload, service.settings().blob_bytes, bound(put_blob)},
+        {"GET", "/v1/blobs/{sha256}", Scope::read, 0, bound(get_blob)},
+        {"PUT", "/v1/names/{kind}/{path...}", Scope::upload, json_limit, bound(put_name)},
+        {"GET", "/v1/names/{kind}", Scope::read, 0, bound(list_names)},
+        {"GET", "/v1/names/{kind}/{path...}", Scope::read, 0, bound(get_name)},
+    };
+    add_catalog(routes, service, "model");
+    add_catalog(routes, service, "environment");
+    return routes;
+}
+
+}  // namespace hairbake

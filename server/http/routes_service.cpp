@@ -1,0 +1,95 @@
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "core/request_keys.h"
+#include "core/request_presets.h"
+#include "server/http/embedded.h"
+#include "server/http/problem.h"
+#include "server/http/replies.h"
+#include "server/http/routes.h"
+#include "server/http/target.h"
+
+namespace hairbake {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+HttpReply version() {
+    return json_reply(
+        200, Json{{"name", "hairbaked"},
+                  {"version", HAIRBAKE_VERSION},
+                  {"api", "v1"},
+                  {"algorithms", {{"transmittance", transmittance_algorithm}, {"irradiance", irradiance_algorithm}}}}
+                 .dump());
+}
+
+/// config/openapi.json with the request's schema in it.
+std::string openapi() {
+    Json document = Json::parse(openapi_document());
+    Json schema = Json::parse(request_schema());
+    schema.erase("$schema");
+    schema["properties"]["priority"] = {{"description", "Bakes of a higher priority are started first."},
+                                        {"type", "integer"},
+                                        {"minimum", -10},
+                                        {"maximum", 10},
+                                        {"default", 0}};
+    document["components"]["schemas"]["BakeRequest"] = std::move(schema);
+    return document.dump(1);
+}
+
+HttpReply ready(Service& service) {
+    const std::string wrong = service.not_ready();
+    if (!wrong.empty()) return problem(503, "not-ready", wrong).with("Retry-After", "5");
+    return json_reply(200, R"({"status":"ready"})");
+}
+
+HttpReply session(std::string cookie) {
+    HttpReply reply;
+    reply.status = 204;
+    return reply.with("Set-Cookie", std::move(cookie)).with("Cache-Control", "no-store");
+}
+
+}  // namespace
+
+std::int64_t number_in_query(const HttpRequest& request, const std::string& name, std::int64_t low, std::int64_t high,
+                             std::int64_t otherwise) {
+    const auto found = request.query.find(name);
+    if (found == request.query.end()) return otherwise;
+    const auto number = read_length(found->second);
+    if (!number || *number > static_cast<std::uint64_t>(high) || static_cast<std::int64_t>(*number) < low)
+        throw Refusal(Refused::unprocessable,
+                      name + " is \"" + found->second.substr(0, 40) + "\"; allowed is an integer from " +
+                          std::to_string(low) + " to " + std::to_string(high),
+                      name);
+    return static_cast<std::int64_t>(*number);
+}
+
+std::vector<Route> service_routes(Service& service, Access& access, Metrics& metrics) {
+    return {
+        {"GET", "/healthz", Scope::open, 0, [](HttpRequest&) { return json_reply(200, R"({"status":"alive"})"); }},
+        {"GET", "/readyz", Scope::open, 0, [&service](HttpRequest&) { return ready(service); }},
+        {"GET", "/version", Scope::open, 0, [](HttpRequest&) { return version(); }},
+        {"GET", "/openapi.json", Scope::open, 0,
+         [document = openapi()](HttpRequest& request) { return cached_json(request, document); }},
+        {"GET", "/metrics", Scope::read, 0,
+         [&service, &metrics](HttpRequest&) {
+             HttpReply reply;
+             reply.type = "text/plain; version=0.0.4; charset=utf-8";
+             reply.body = metrics.text(service.counts());
+             return reply;
+         }},
+        {"POST", "/v1/session", Scope::open, 0,
+         [&access](HttpRequest& request) { return session(access.open_session(request)); }},
+        {"DELETE", "/v1/session", Scope::open, 0,
+         [&access](HttpRequest& request) { return session(access.close_session(request)); }},
+    };
+}
+
+std::vector<Route> all_routes(Service& service, Access& access, Metrics& metrics) {
+    std::vector<Route> routes = service_routes(service, access, metrics);
+    for (std::vector<Route> group : {input_routes(service), bake_routes(service), upload_routes(service)})
+        routes.insert(routes.end(), std::make_move_iterator(group.begin()), std::make_move_iterator(group.end()));
+    return routes;
+}
+
+}  // namespace hairbake

@@ -1,0 +1,107 @@
+#include "server/jobs/bake_request.h"
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/request_json.h"
+#include "server/jobs/names.h"
+#include "server/store/blob_store.h"
+#include "server/store/refusal.h"
+
+namespace hairbake {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr int deepest = 16;
+
+/// Parses without recursing deeper than a request can be.
+Json parse(const std::string& body) {
+    const auto shallow = [](int depth, Json::parse_event_t, Json&) {
+        if (depth > deepest) throw Refusal(Refused::malformed, "the body is nested too deeply");
+        return true;
+    };
+    try {
+        return Json::parse(body, shallow);
+    } catch (const Json::exception& error) {
+        throw Refusal(Refused::malformed, std::string("the body is not JSON: ") + error.what());
+    }
+}
+
+struct Resolved {
+    std::string digest;
+    Json name;  ///< {"path", "version"} or null
+};
+
+Resolved resolve(Sql& sql, const std::string& value, const std::string& kind, const std::string& field) {
+    Resolved resolved;
+    if (value.starts_with("name:")) {
+        const NamedDigest named = Names::resolve(sql, kind, value.substr(5), field);
+        resolved = {named.sha256, {{"path", named.path}, {"version", named.version}}};
+    } else if (value.starts_with("sha256:") && is_digest(value.substr(7))) {
+        resolved.digest = value.substr(7);
+    } else {
+        throw Refusal(Refused::unprocessable,
+                      field + " is neither of what is allowed: sha256: and 64 hexadecimal digits, or name: and a name",
+                      field);
+    }
+    if (sql.rows("SELECT 1 FROM blobs WHERE sha256 = ?", {resolved.digest}).empty())
+        throw Refusal(Refused::unprocessable,
+                      field + " asks for sha256:" + resolved.digest + ", which is not stored; send it first", field);
+    return resolved;
+}
+
+void resolve_files(Sql& sql, BakeRequest& request, Json& names) {
+    struct File {
+        const char* field;
+        const char* kind;
+        std::optional<std::string>* value;
+    };
+    for (const File& file : {File{"hair", "model", &request.hair},
+                             {"environment", "environment", &request.environment},
+                             {"occluder", "mesh", &request.occluder},
+                             {"receiver", "mesh", &request.receiver}}) {
+        if (!*file.value) continue;
+        const Resolved resolved = resolve(sql, **file.value, file.kind, file.field);
+        *file.value = "sha256:" + resolved.digest;
+        if (!resolved.name.is_null()) names[file.field] = resolved.name;
+    }
+}
+
+int take_priority(Json& body) {
+    const auto found = body.find("priority");
+    if (found == body.end()) return 0;
+    const Json value = *found;
+    body.erase("priority");
+    if (!value.is_number_integer() || value < -10 || value > 10)
+        throw Refusal(Refused::unprocessable,
+                      "priority is " + value.dump().substr(0, 40) + "; allowed is an integer from -10 to 10",
+                      "priority");
+    return value.get<int>();
+}
+
+}  // namespace
+
+BakePlan read_bake_request(Sql& sql, const std::string& text) {
+    Json body = parse(text);
+    if (!body.is_object()) throw Refusal(Refused::unprocessable, "the body is not a JSON object");
+    const int priority = take_priority(body);
+    BakeRequest request;
+    Json names = Json::object();
+    try {
+        merge_json(request, body.dump(-1, ' ', false, Json::error_handler_t::replace), "the request");
+        validate(request);
+    } catch (const Error& error) {
+        throw Refusal(Refused::unprocessable, error.what(), error.field());
+    }
+    resolve_files(sql, request, names);
+    BakePlan plan = plan_bake(request);
+    plan.names = names.dump();
+    plan.priority = priority;
+    return plan;
+}
+
+std::string stored_digest(Sql& sql, const std::string& value, const std::string& kind, const std::string& field) {
+    return resolve(sql, value, kind, field).digest;
+}
+
+}  // namespace hairbake

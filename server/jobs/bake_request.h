@@ -1,0 +1,19 @@
+// The body of a request for a bake, as it comes over HTTP.
+#pragma once
+
+#include <string>
+
+#include "server/jobs/stage_plan.h"
+#include "server/store/database.h"
+
+namespace hairbake {
+
+/// Reads the request's JSON (config/request.schema.json, plus "priority" from -10 to 10): defaults are filled in, names
+/// become digests, digests must be stored. A path is refused. In the caller's transaction. Throws Refusal naming the
+/// field.
+BakePlan read_bake_request(Sql& sql, const std::string& body);
+
+/// The digest that "sha256:..." or "name:..." stands for; `kind` is that of names. Throws Refusal naming `field`.
+std::string stored_digest(Sql& sql, const std::string& value, const std::string& kind, const std::string& field);
+
+}  // namespace hairbake

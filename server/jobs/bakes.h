@@ -1,0 +1,43 @@
+// What can be asked about bakes, and their files.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "server/jobs/queue.h"
+
+namespace hairbake {
+
+/// Empty fields do not filter.
+struct BakeFilter {
+    std::string state, model, environment, name, batch;  ///< digests, a name's path, a batch's id
+    std::int64_t cursor = INT64_MAX;
+    int limit = 50;
+};
+
+/// A file of a finished bake: a blob, or the manifest as text.
+struct BakeFile {
+    std::string name, etag;  ///< digest of the bytes
+    std::optional<std::string> blob;
+    std::string text;
+};
+
+/// Thread-safe. Answers are JSON objects.
+class Bakes {
+public:
+    Bakes(Database& database, Queue& queue) : database_(database), queue_(queue) {}
+
+    /// Throws Refusal(not_found).
+    std::string get(const std::string& id);
+    /// {"bakes": [...], "next": cursor or null}, newest first, without their requests.
+    std::string list(const BakeFilter& filter);
+    /// Throws Refusal(not_found); Refusal(conflict) while the bake is not done.
+    BakeFile file(const std::string& id, const std::string& name);
+
+private:
+    Database& database_;
+    Queue& queue_;
+};
+
+}  // namespace hairbake

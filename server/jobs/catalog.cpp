@@ -1,0 +1,144 @@
+#include "server/jobs/catalog.h"
+
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "server/jobs/words.h"
+#include "server/store/refusal.h"
+
+namespace hairbake {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Columns: seq, sha256, facts, thumbnail, created, bytes.
+constexpr const char* columns =
+    "SELECT i.seq, i.sha256, i.facts, i.thumbnail, i.created, b.bytes FROM inputs i JOIN blobs b USING(sha256) ";
+
+Json entry(const std::string& kind, const SqlRow& row) {
+    const std::string self = "/v1/" + kind + "s/" + row.text(1);
+    Json json{{"id", row.text(1)}, {"kind", kind}, {"bytes", row.integer(5)}, {"created", time_text(row.number(4))}};
+    json["facts"] = Json::parse(row.text(2));
+    json["links"] = {{"self", self}, {"blob", "/v1/blobs/" + row.text(1)}};
+    if (!row.null(3)) json["links"]["thumbnail"] = self + "/thumbnail.png";
+    return json;
+}
+
+[[noreturn]] void refuse_unknown(const std::string& kind, const std::string& digest) {
+    throw Refusal(Refused::not_found, "there is no " + kind + " " + digest.substr(0, 64));
+}
+
+}  // namespace
+
+Catalog::Catalog(Database& database, BlobStore& store, Runner& runner)
+    : database_(database), store_(store), runner_(runner) {}
+
+Catalog::Added Catalog::add(const std::string& kind, const std::string& digest) {
+    if (!store_.size_of(digest))
+        throw Refusal(Refused::unprocessable, "sha256:" + digest.substr(0, 64) + " is not stored; send it first",
+                      "sha256");
+    store_.touch(digest);
+    bool known = false;
+    database_.read([&](Sql& sql) {
+        known = !sql.rows("SELECT 1 FROM inputs WHERE kind = ? AND sha256 = ?", {kind, digest}).empty();
+    });
+    if (!known) inspect(kind, digest);
+    return {get(kind, digest), known};
+}
+
+void Catalog::inspect(const std::string& kind, const std::string& digest) {
+    if (!readers_.try_acquire_for(std::chrono::seconds(60)))
+        throw Refusal(Refused::busy, "too many files are being read; try again");
+    struct Release {
+        std::counting_semaphore<2>& readers;
+        ~Release() { readers.release(); }
+    } const release{readers_};
+    const fs::path folder = store_.incoming_folder() / random_name();
+    make_folder(folder);
+    const std::string path = store_.path_of(digest).string();
+    Task task;
+    task.input = Json{{"task", "inspect"},         {"kind", kind}, {"file", path},
+                      {"folder", folder.string()}, {"threads", 1}, {"names", {{path, "sha256:" + digest}}}}
+                     .dump();
+    const Outcome outcome = runner_.run(task);
+    if (outcome.end == Outcome::End::done) {
+        const std::string thumbnail = digest_of_file(folder / "thumbnail.png");
+        const auto held = database_.lock();  // no eviction may come between blob and row
+        store_.adopt(folder / "thumbnail.png", thumbnail);
+        database_.write([&](Sql& sql) {
+            sql.run("INSERT OR IGNORE INTO inputs(kind, sha256, facts, thumbnail, created) VALUES(?, ?, ?, ?, ?)",
+                    {kind, digest, outcome.facts, thumbnail, now()});
+        });
+    }
+    std::error_code ignored;
+    fs::remove_all(folder, ignored);
+    if (outcome.end != Outcome::End::done) throw Refusal(Refused::unprocessable, outcome.message, "sha256");
+}
+
+std::string Catalog::get(const std::string& kind, const std::string& digest) {
+    std::string answer;
+    database_.read([&](Sql& sql) {
+        const auto rows = sql.rows(std::string(columns) + "WHERE kind = ? AND sha256 = ?", {kind, digest});
+        if (!rows.empty()) answer = entry(kind, rows[0]).dump();
+    });
+    if (answer.empty()) refuse_unknown(kind, digest);
+    return answer;
+}
+
+std::string Catalog::list(const std::string& kind, std::int64_t cursor, int limit) {
+    Json answer{{kind + "s", Json::array()}, {"next", nullptr}};
+    Json& entries = answer[kind + "s"];
+    database_.read([&](Sql& sql) {
+        const auto rows = sql.rows(std::string(columns) + "WHERE kind = ? AND seq < ? ORDER BY seq DESC LIMIT ?",
+                                   {kind, cursor, std::int64_t(limit) + 1});
+        for (std::size_t i = 0; i < rows.size() && i < static_cast<std::size_t>(limit); ++i)
+            entries.push_back(entry(kind, rows[i]));
+        if (rows.size() > static_cast<std::size_t>(limit))
+            answer["next"] = std::to_string(rows[static_cast<std::size_t>(limit) - 1].integer(0));
+    });
+    return answer.dump();
+}
+
+std::string Catalog::thumbnail(const std::string& kind, const std::string& digest) {
+    std::string found;
+    database_.read([&](Sql& sql) {
+        const auto rows = sql.rows("SELECT thumbnail FROM inputs WHERE kind = ? AND sha256 = ?", {kind, digest});
+        if (!rows.empty()) found = rows[0].text(0);
+    });
+    if (found.empty()) refuse_unknown(kind, digest);
+    return found;
+}
+
+void Catalog::remove(const std::string& kind, const std::string& digest) {
+    const auto held = database_.lock();
+    bool blob_needed = false;
+    database_.write([&](Sql& sql) {
+        if (sql.rows("SELECT 1 FROM inputs WHERE kind = ? AND sha256 = ?", {kind, digest}).empty())
+            refuse_unknown(kind, digest);
+        const auto live = sql.rows(
+            "SELECT b.id FROM stage_inputs i JOIN bakes b ON b.transmittance = i.stage OR b.irradiance = "
+            "i.stage WHERE i.sha256 = ? AND b.state IN ('queued', 'running') LIMIT 1",
+            {digest});
+        if (!live.empty())
+            throw Refusal(Refused::conflict, "the bake " + live[0].text(0) + " still needs it; cancel that first");
+        const auto name = sql.rows(
+            "SELECT path FROM names n WHERE kind = ? AND sha256 = ? AND version = (SELECT max(version) "
+            "FROM names m WHERE m.kind = n.kind AND m.path = n.path) LIMIT 1",
+            {kind, digest});
+        if (!name.empty())
+            throw Refusal(Refused::conflict,
+                          "the name " + kind + "/" + name[0].text(0) + " points at it; move that first");
+        sql.run("DELETE FROM inputs WHERE kind = ? AND sha256 = ?", {kind, digest});
+        blob_needed =
+            !sql.rows(
+                    "SELECT 1 FROM stage_files WHERE sha256 = ? UNION ALL SELECT 1 FROM inputs WHERE sha256 = ? "
+                    "UNION ALL SELECT 1 FROM inputs WHERE thumbnail = ? LIMIT 1",
+                    {digest, digest, digest})
+                 .empty();
+    });
+    if (!blob_needed) store_.remove(digest);
+}
+
+}  // namespace hairbake

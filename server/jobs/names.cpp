@@ -1,0 +1,121 @@
+#include "server/jobs/names.h"
+
+#include <algorithm>
+#include <cctype>
+#include <nlohmann/json.hpp>
+
+#include "server/jobs/words.h"
+#include "server/store/blob_store.h"
+#include "server/store/refusal.h"
+
+namespace hairbake {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr std::size_t longest_path = 200, longest_note = 500;
+
+void check_name(const std::string& kind, const std::string& path) {
+    if (!is_name_kind(kind))
+        throw Refusal(Refused::not_found,
+                      "there is no kind \"" + kind + "\" of names; allowed is model, environment or mesh", "kind");
+    if (!is_name_path(path))
+        throw Refusal(Refused::unprocessable,
+                      "a name is 1 to 200 characters: letters, digits, '.', '_', '-' in segments separated by '/'",
+                      "path");
+}
+
+Json version_json(const std::string& kind, const std::string& path, const SqlRow& row, std::size_t first) {
+    return {{"kind", kind},
+            {"path", path},
+            {"version", row.integer(first)},
+            {"sha256", row.text(first + 1)},
+            {"note", row.text(first + 2)},
+            {"token", row.text(first + 3)},
+            {"created", time_text(row.number(first + 4))}};
+}
+
+}  // namespace
+
+bool is_name_kind(const std::string& kind) { return kind == "model" || kind == "environment" || kind == "mesh"; }
+
+bool is_name_path(const std::string& path) {
+    if (path.empty() || path.size() > longest_path) return false;
+    std::string segment;
+    for (const char c : path + "/") {
+        if (c == '/') {
+            if (segment.empty() || segment == "." || segment == "..") return false;
+            segment.clear();
+        } else if (std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '_' || c == '-') {
+            segment += c;
+        } else {
+            return false;
+        }
+    }
+    return true;
+}
+
+std::string Names::put(Sql& sql, const std::string& kind, const std::string& path, const std::string& sha256,
+                       const std::string& note, const std::string& token) {
+    check_name(kind, path);
+    if (!is_digest(sha256) || sql.rows("SELECT 1 FROM blobs WHERE sha256 = ?", {sha256}).empty())
+        throw Refusal(Refused::unprocessable,
+                      "sha256 is \"" + sha256.substr(0, 64) + "\"; allowed is the digest of a stored blob", "sha256");
+    if (note.size() > longest_note) throw Refusal(Refused::unprocessable, "note is longer than 500 bytes", "note");
+    const auto newest = sql.rows(
+        "SELECT version, sha256 FROM names WHERE kind = ? AND path = ? ORDER BY version DESC LIMIT 1", {kind, path});
+    if (newest.empty() || newest[0].text(1) != sha256)
+        sql.run("INSERT INTO names(kind, path, version, sha256, note, token, created) VALUES(?, ?, ?, ?, ?, ?, ?)",
+                {kind, path, newest.empty() ? std::int64_t(1) : newest[0].integer(0) + 1, sha256, note, token, now()});
+    return get(sql, kind, path);
+}
+
+NamedDigest Names::resolve(Sql& sql, const std::string& kind, const std::string& name, const std::string& field) {
+    const std::size_t at = name.find('@');
+    const std::string path = name.substr(0, at), wanted = at == std::string::npos ? "" : name.substr(at + 1);
+    const bool number = wanted.size() < 10 &&
+                        std::all_of(wanted.begin(), wanted.end(), [](unsigned char c) { return std::isdigit(c); });
+    const auto rows =
+        !is_name_path(path) || !number ? std::vector<SqlRow>()
+        : wanted.empty()
+            ? sql.rows("SELECT version, sha256 FROM names WHERE kind = ? AND path = ? ORDER BY version DESC LIMIT 1",
+                       {kind, path})
+            : sql.rows("SELECT version, sha256 FROM names WHERE kind = ? AND path = ? AND version = ?",
+                       {kind, path, std::int64_t(std::stoll(wanted))});
+    if (rows.empty())
+        throw Refusal(
+            Refused::unprocessable,
+            field + " asks for name:" + name.substr(0, longest_path) + ", which is no name of the kind " + kind, field);
+    return {path, rows[0].text(1), rows[0].integer(0)};
+}
+
+std::string Names::get(Sql& sql, const std::string& kind, const std::string& path) {
+    check_name(kind, path);
+    const auto rows = sql.rows(
+        "SELECT version, sha256, note, token, created FROM names WHERE kind = ? AND path = ? "
+        "ORDER BY version DESC",
+        {kind, path});
+    if (rows.empty()) throw Refusal(Refused::not_found, "there is no name " + kind + "/" + path);
+    Json answer = version_json(kind, path, rows[0], 0);
+    answer["versions"] = Json::array();
+    for (const SqlRow& row : rows) answer["versions"].push_back(version_json(kind, path, row, 0));
+    return answer.dump();
+}
+
+std::string Names::list(Sql& sql, const std::string& kind, const std::string& cursor, int limit) {
+    if (!is_name_kind(kind)) check_name(kind, "x");
+    const auto rows = sql.rows(
+        "SELECT path, max(version), sha256, note, token, created FROM names WHERE kind = ? AND path > ? GROUP BY path "
+        "ORDER BY path LIMIT ?",
+        {kind, cursor, std::int64_t(limit) + 1});
+    Json answer{{"names", Json::array()}, {"next", nullptr}};
+    for (const SqlRow& row : rows) {
+        if (answer["names"].size() == static_cast<std::size_t>(limit)) {
+            answer["next"] = answer["names"].back()["path"];
+            break;
+        }
+        answer["names"].push_back(version_json(kind, row.text(0), row, 1));
+    }
+    return answer.dump();
+}
+
+}  // namespace hairbake

@@ -1,0 +1,138 @@
+#include "server/jobs/service.h"
+
+#include <fcntl.h>
+#include <spdlog/spdlog.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+
+#include "core/base/error.h"
+#include "server/jobs/bake_request.h"
+
+namespace hairbake {
+namespace {
+
+Descriptor lock_store(const std::filesystem::path& folder) {
+    make_folder(folder);
+    Descriptor lock(::open((folder / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0640));
+    if (!lock) throw_store_error(folder / "lock", errno);
+    if (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0)
+        throw Error(ErrorKind::usage, "another hairbaked works on the store " + folder.string());
+    return lock;
+}
+
+}  // namespace
+
+Service::Service(const Settings& settings)
+    : settings_(settings),
+      lock_(lock_store(settings.store)),
+      database_(settings.store / "hairbake.db"),
+      store_(settings.store, database_),
+      runner_({settings.worker, settings.memory_bytes, settings.cpu_seconds, settings.wall_seconds}),
+      queue_(database_, store_, settings.max_crashes),
+      bakes_(database_, queue_),
+      batches_(database_, queue_),
+      catalog_(database_, store_, runner_),
+      uploads_(database_, store_, settings.store / "uploads", settings.upload_lifetime_s, settings.blob_bytes) {
+    const std::vector<std::string> lost = store_.recover();
+    if (!lost.empty()) spdlog::warn("{} blobs were lost; what needs them is baked again", lost.size());
+    uploads_.recover();
+    queue_.recover(lost);
+    slots_ = std::make_unique<Slots>(queue_, runner_, database_, store_, settings_.budget_bytes, settings_.workers,
+                                     settings_.worker_threads);
+    caretaker_ = std::jthread([this] { look_after(); });
+}
+
+Service::~Service() {
+    stop();
+    slots_.reset();
+    caretaker_ = {};
+    try {
+        store_.flush_uses();
+    } catch (const std::exception& error) {
+        spdlog::error("at the end: {}", error.what());
+    }
+}
+
+void Service::stop() {
+    queue_.stop();
+    stopped_.notify_all();
+}
+
+/// Once a minute: uses are written down, old uploads go, the budget is kept.
+void Service::look_after() {
+    std::unique_lock lock(mutex_);
+    while (!stopped_.wait_for(lock, std::chrono::seconds(60), [this] { return queue_.stopping(); })) try {
+            store_.flush_uses();
+            uploads_.expire();
+            evict(database_, store_, settings_.budget_bytes);
+        } catch (const std::exception& error) {
+            spdlog::error("caretaker: {}", error.what());
+        }
+}
+
+std::unique_ptr<IncomingFile> Service::receive(std::uint64_t expected_bytes) {
+    if (expected_bytes > settings_.blob_bytes)
+        throw Refusal(Refused::too_large, "the body is " + std::to_string(expected_bytes) +
+                                              " bytes long; allowed is up to " + std::to_string(settings_.blob_bytes));
+    const std::uint64_t room = settings_.budget_bytes - std::min(settings_.budget_bytes, expected_bytes);
+    if (!evict(database_, store_, room))
+        throw Refusal(Refused::full, "the store's budget of " + std::to_string(settings_.budget_bytes) +
+                                         " bytes is used up by what live bakes and names need");
+    return std::make_unique<IncomingFile>(store_.incoming_folder(), settings_.blob_bytes);
+}
+
+bool Service::store_blob(IncomingFile& file, const std::string& expected_digest) {
+    const bool fresh = store_.put(file, expected_digest);
+    if (fresh) evict(database_, store_, settings_.budget_bytes, file.digest());
+    return fresh;
+}
+
+OpenBlob Service::open_blob(const std::string& digest) try {
+    return store_.open(digest);
+} catch (const LostBlob& lost) {
+    spdlog::error("{}", lost.what());
+    queue_.blob_lost(lost.digest());
+    throw Refusal(Refused::busy, std::string(lost.what()) + "; a result is baked again, an input must be sent again");
+}
+
+Service::Answer Service::submit(const std::string& body) {
+    const auto held = database_.lock();  // what was found stored stays stored until it is queued
+    BakePlan plan;
+    database_.read([&](Sql& sql) { plan = read_bake_request(sql, body); });
+    const Submitted submitted = queue_.submit({plan}).at(0);
+    return {submitted.id, submitted.state, bakes_.get(submitted.id)};
+}
+
+std::string Service::not_ready() {
+    if (queue_.stopping()) return "the service is stopping";
+    try {
+        IncomingFile probe(store_.incoming_folder(), 16);
+        probe.add(std::as_bytes(std::span("ready", 5)));
+        database_.read([](Sql& sql) { sql.rows("SELECT count(*) FROM names"); });
+    } catch (const std::exception& error) {
+        return error.what();
+    }
+    if (::access(settings_.worker.c_str(), X_OK) != 0) return "the worker program cannot be started";
+    return {};
+}
+
+Service::Counts Service::counts() {
+    Counts counts;
+    for (const char* state : {"queued", "running", "done", "failed", "cancelled"})
+        counts.stages[state] = counts.bakes[state] = 0;
+    database_.read([&](Sql& sql) {
+        for (const SqlRow& row : sql.rows("SELECT state, count(*) FROM stages GROUP BY state"))
+            counts.stages[row.text(0)] = row.integer(1);
+        for (const SqlRow& row : sql.rows("SELECT state, count(*) FROM bakes GROUP BY state"))
+            counts.bakes[row.text(0)] = row.integer(1);
+        const SqlRow blobs = sql.rows("SELECT count(*), sum(bytes) FROM blobs").at(0);
+        counts.blobs = static_cast<std::uint64_t>(blobs.integer(0));
+        counts.bytes = static_cast<std::uint64_t>(blobs.integer(1));
+    });
+    return counts;
+}
+
+}  // namespace hairbake

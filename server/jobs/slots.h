@@ -1,0 +1,37 @@
+// The worker slots: threads that take stages from the queue, have them run, and store what came of them.
+#pragma once
+
+#include <cstdint>
+#include <thread>
+#include <vector>
+
+#include "server/jobs/queue.h"
+#include "server/jobs/runner.h"
+
+namespace hairbake {
+
+class Slots {
+public:
+    /// `budget` of the store in bytes; `threads` for each worker.
+    Slots(Queue& queue, Runner& runner, Database& database, BlobStore& store, std::uint64_t budget, int slots,
+          int threads);
+    /// Queue::stop() comes first.
+    ~Slots();
+
+private:
+    void work();
+    void run(const ClaimedStage& stage);
+    std::string task_for(const ClaimedStage& stage, const std::filesystem::path& folder);
+    void remove_spoiled_inputs(const std::vector<std::string>& digests);
+    void store_result(const ClaimedStage& stage, const std::filesystem::path& folder);
+
+    Queue& queue_;
+    Runner& runner_;
+    Database& database_;
+    BlobStore& store_;
+    std::uint64_t budget_;
+    int threads_;
+    std::vector<std::jthread> slots_;
+};
+
+}  // namespace hairbake

@@ -1,0 +1,153 @@
+#include "server/jobs/uploads.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+
+#include "core/base/digest.h"
+#include "server/store/file_system.h"
+#include "server/store/refusal.h"
+
+namespace hairbake {
+namespace fs = std::filesystem;
+
+/// Marks an upload as being written.
+struct Uploads::Busy {
+    Busy(Uploads& uploads, const std::string& id) : uploads_(uploads), id_(id) {
+        const std::lock_guard lock(uploads.mutex_);
+        if (!uploads.busy_.insert(id).second)
+            throw Refusal(Refused::conflict, "another request is writing to this upload");
+    }
+    ~Busy() {
+        const std::lock_guard lock(uploads_.mutex_);
+        uploads_.busy_.erase(id_);
+    }
+    Busy(const Busy&) = delete;
+    Busy& operator=(const Busy&) = delete;
+
+private:
+    Uploads& uploads_;
+    const std::string id_;
+};
+
+Uploads::Uploads(Database& database, BlobStore& store, fs::path folder, double lifetime_s, std::uint64_t most_bytes)
+    : database_(database), store_(store), folder_(std::move(folder)), lifetime_s_(lifetime_s), most_bytes_(most_bytes) {
+    make_folder(folder_);
+}
+
+std::uint64_t Uploads::size_on_disk(const std::string& id) const {
+    std::error_code error;
+    const std::uintmax_t bytes = fs::file_size(folder_ / id, error);
+    return error ? 0 : bytes;
+}
+
+void Uploads::recover() {
+    std::error_code ignored;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
+        bool known = false;
+        database_.read([&](Sql& sql) {
+            known = !sql.rows("SELECT 1 FROM uploads WHERE id = ?", {entry.path().filename().string()}).empty();
+        });
+        if (!known) fs::remove(entry, ignored);
+    }
+    database_.write([&](Sql& sql) {
+        for (const SqlRow& row : sql.rows("SELECT id FROM uploads"))
+            if (!fs::exists(folder_ / row.text(0))) sql.run("DELETE FROM uploads WHERE id = ?", {row.text(0)});
+    });
+    expire();
+}
+
+void Uploads::expire() {
+    std::vector<std::string> old;
+    database_.read([&](Sql& sql) {
+        for (const SqlRow& row : sql.rows("SELECT id FROM uploads WHERE expires < ?", {now()}))
+            old.push_back(row.text(0));
+    });
+    for (const std::string& id : old) try {
+            remove(id);
+        } catch (const Refusal&) {
+            // it grows just now
+        }
+}
+
+UploadState Uploads::create(std::uint64_t bytes, const std::string& sha256, const std::string& metadata) {
+    if (bytes > most_bytes_)
+        throw Refusal(Refused::too_large, "Upload-Length is " + std::to_string(bytes) + "; allowed is up to " +
+                                              std::to_string(most_bytes_) + " bytes");
+    if (!is_digest(sha256))
+        throw Refusal(Refused::malformed,
+                      "Upload-Metadata lacks sha256: the digest of the whole file as 64 hexadecimal digits",
+                      "Upload-Metadata");
+    UploadState state{random_name(), metadata, bytes, 0, now() + lifetime_s_};
+    const Descriptor file(::open((folder_ / state.id).c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0640));
+    if (!file) throw_store_error(folder_ / state.id, errno);
+    sync_folder(folder_);
+    database_.write([&](Sql& sql) {
+        sql.run("INSERT INTO uploads VALUES(?, ?, ?, ?, ?, ?)",
+                {state.id, static_cast<std::int64_t>(bytes), sha256, metadata, now(), state.expires});
+    });
+    return state;
+}
+
+UploadState Uploads::get(const std::string& id) {
+    UploadState state;
+    database_.read([&](Sql& sql) {
+        const auto rows = sql.rows("SELECT bytes, metadata, expires FROM uploads WHERE id = ?", {id});
+        if (rows.empty()) throw Refusal(Refused::not_found, "there is no upload " + id.substr(0, 64));
+        state = {id, rows[0].text(1), static_cast<std::uint64_t>(rows[0].integer(0)), size_on_disk(id),
+                 rows[0].number(2)};
+    });
+    return state;
+}
+
+Uploads::Appended Uploads::append(const std::string& id, std::uint64_t offset,
+                                  const std::function<void(const Receiver&)>& read) {
+    const Busy busy(*this, id);
+    const UploadState state = get(id);
+    if (offset != state.offset)
+        throw Refusal(Refused::conflict,
+                      "Upload-Offset is " + std::to_string(offset) + "; allowed is " + std::to_string(state.offset),
+                      "Upload-Offset");
+    const fs::path path = folder_ / id;
+    const Descriptor file(::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
+    if (!file) throw_store_error(path, errno);
+    std::uint64_t size = offset;
+    read([&](std::span<const std::byte> bytes) {
+        if (bytes.size() > state.bytes - size)
+            throw Refusal(Refused::too_large,
+                          "the upload grows beyond its Upload-Length of " + std::to_string(state.bytes));
+        write_all(file.get(), bytes, path);
+        size += bytes.size();
+    });
+    sync_file(file.get(), path);
+    if (size == state.bytes) return complete(id);
+    const double expires = now() + lifetime_s_;
+    database_.write([&](Sql& sql) { sql.run("UPDATE uploads SET expires = ? WHERE id = ?", {expires, id}); });
+    return {size, expires, {}};
+}
+
+Uploads::Appended Uploads::complete(const std::string& id) {
+    std::string expected;
+    database_.read(
+        [&](Sql& sql) { expected = sql.rows("SELECT sha256 FROM uploads WHERE id = ?", {id}).at(0).text(0); });
+    const std::uint64_t size = size_on_disk(id);
+    const std::string found = digest_of_file(folder_ / id);
+    const bool whole = found == expected;
+    if (whole) store_.adopt(folder_ / id, expected);
+    database_.write([&](Sql& sql) { sql.run("DELETE FROM uploads WHERE id = ?", {id}); });
+    ::unlink((folder_ / id).c_str());  // there is none when the store took it
+    if (!whole)
+        throw Refusal(Refused::unprocessable,
+                      "the digest of the uploaded bytes is " + found + "; allowed is " + expected, "sha256");
+    return {size, 0, expected};
+}
+
+void Uploads::remove(const std::string& id) {
+    const Busy busy(*this, id);
+    get(id);
+    database_.write([&](Sql& sql) { sql.run("DELETE FROM uploads WHERE id = ?", {id}); });
+    ::unlink((folder_ / id).c_str());
+}
+
+}  // namespace hairbake

@@ -1,0 +1,66 @@
+// Uploads that go on after a lost connection (tus 1.0: core, creation, termination, expiration).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <set>
+#include <span>
+#include <string>
+
+#include "server/store/blob_store.h"
+#include "server/store/database.h"
+
+namespace hairbake {
+
+struct UploadState {
+    std::string id, metadata;
+    std::uint64_t bytes = 0, offset = 0;
+    double expires = 0;
+};
+
+/// Thread-safe; one upload grows by one request at a time. An upload's file is `folder`/<id>; its size is the offset.
+class Uploads {
+public:
+    using Receiver = std::function<void(std::span<const std::byte>)>;
+
+    /// `lifetime_s` of an upload that does not grow; `most_bytes` of one upload.
+    Uploads(Database& database, BlobStore& store, std::filesystem::path folder, double lifetime_s,
+            std::uint64_t most_bytes);
+
+    /// At boot: files without a row go, and rows whose file has become a blob already.
+    void recover();
+    /// Removes what has expired.
+    void expire();
+
+    /// `sha256` is what the whole file must have. Throws Refusal.
+    UploadState create(std::uint64_t bytes, const std::string& sha256, const std::string& metadata);
+    UploadState get(const std::string& id);
+    /// Appends what `read` gives to its receiver, makes it durable, and makes the whole a blob when it is complete
+    /// (then the upload is gone and is_blob() is its digest). Throws Refusal(conflict) when `offset` is not the
+    /// upload's, or another request is at it; what came before an interruption stays.
+    struct Appended {
+        std::uint64_t offset = 0;
+        double expires = 0;
+        std::string blob;  ///< digest, once complete
+    };
+    Appended append(const std::string& id, std::uint64_t offset, const std::function<void(const Receiver&)>& read);
+    void remove(const std::string& id);
+
+private:
+    struct Busy;
+    std::uint64_t size_on_disk(const std::string& id) const;
+    Appended complete(const std::string& id);
+
+    Database& database_;
+    BlobStore& store_;
+    std::filesystem::path folder_;
+    double lifetime_s_;
+    std::uint64_t most_bytes_;
+    std::mutex mutex_;
+    std::set<std::string> busy_;
+};
+
+}  // namespace hairbake

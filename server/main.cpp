@@ -1,0 +1,155 @@
+// hairbaked: the service. The boot order is main()'s.
+#include <signal.h>
+#include <spdlog/pattern_formatter.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "core/base/digest.h"
+#include "core/base/error.h"
+#include "server/http/access.h"
+#include "server/http/metrics.h"
+#include "server/http/rim.h"
+#include "server/http/router.h"
+#include "server/http/routes.h"
+#include "server/jobs/service.h"
+#include "server/settings.h"
+
+namespace {
+
+using namespace hairbake;
+
+constexpr const char* usage = R"(hairbaked [--config FILE]   serve; without a file, the defaults hold
+hairbaked token new         print a new token and the lines for the configuration
+hairbaked --version
+)";
+
+/// The message with what JSON does not take in a string escaped.
+class JsonMessage : public spdlog::custom_flag_formatter {
+public:
+    void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& target) override {
+        for (const char c : message.payload) {
+            char escaped[8] = {c, 0};
+            if (c == '"' || c == '\\')
+                std::snprintf(escaped, sizeof escaped, "\\%c", c);
+            else if (static_cast<unsigned char>(c) < 0x20)
+                std::snprintf(escaped, sizeof escaped, "\\u%04x", c);
+            target.append(escaped, escaped + std::strlen(escaped));
+        }
+    }
+    std::unique_ptr<custom_flag_formatter> clone() const override { return std::make_unique<JsonMessage>(); }
+};
+
+/// Log lines on standard error, each a JSON object.
+void set_up_log() {
+    auto formatter = std::make_unique<spdlog::pattern_formatter>();
+    formatter->add_flag<JsonMessage>('*').set_pattern(
+        R"({"time":"%Y-%m-%dT%H:%M:%S.%e%z","level":"%l","thread":%t,"message":"%*"})");
+    auto log = spdlog::stderr_logger_mt("hairbaked");
+    log->set_formatter(std::move(formatter));
+    spdlog::set_default_logger(log);
+}
+
+int print_new_token() {
+    const std::string token = new_token();
+    std::printf(
+        "token (shown only now): %s\n\n[[token]]\nname = \"\"\nsha256 = \"%s\"\nscopes = [\"read\", \"upload\", "
+        "\"bake\"]\n",
+        token.c_str(), Digest().add(token).hex().c_str());
+    return 0;
+}
+
+sigset_t stop_signals() {
+    sigset_t set;
+    sigemptyset(&set);
+    sigaddset(&set, SIGINT);
+    sigaddset(&set, SIGTERM);
+    return set;
+}
+
+/// In every thread that starts later, stop signals wait for wait_for_signal().
+void prepare_signals() {
+    signal(SIGINT, SIG_DFL);  // a shell starts background jobs with SIGINT ignored
+    signal(SIGPIPE, SIG_IGN);
+    signal(SIGXFSZ, SIG_IGN);
+    const sigset_t set = stop_signals();
+    pthread_sigmask(SIG_BLOCK, &set, nullptr);
+}
+
+void wait_for_signal() {
+    const sigset_t set = stop_signals();
+    int received = 0;
+    while (sigwait(&set, &received) != 0) {
+    }
+}
+
+/// Everything that was answered is on the disk already, so a slow client or worker does not hold up the stop.
+void end_hard_after(std::chrono::seconds patience) {
+    std::thread([patience] {
+        std::this_thread::sleep_for(patience);
+        _exit(0);
+    }).detach();
+}
+
+HttpReply answer(const Router& router, Metrics& metrics, HttpRequest& request) {
+    const auto start = std::chrono::steady_clock::now();
+    HttpReply reply = router.answer(request);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    metrics.count(request.method, reply.status, seconds);
+    spdlog::debug("{} {} by {} in {:.1f} ms", request.method, reply.status, request.caller, seconds * 1000);
+    return reply;
+}
+
+int serve(const Settings& settings) {
+    ::umask(027);
+    prepare_signals();
+    Service service(settings);
+    Access access(settings.tokens);
+    Metrics metrics;
+    const Router router(all_routes(service, access, metrics), access);
+    Rim rim({settings.socket, settings.address, settings.port, settings.threads, settings.waiting},
+            [&](HttpRequest& request) { return answer(router, metrics, request); });
+    std::jthread serving([&] { rim.serve(); });
+    rim.wait_until_serving();
+    std::printf("hairbaked listens on %s\n", rim.address().c_str());
+    std::fflush(stdout);
+    wait_for_signal();
+    spdlog::info("stopping");
+    end_hard_after(std::chrono::seconds(4));
+    rim.stop();
+    service.stop();
+    serving.join();
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    set_up_log();
+    try {
+        const std::string first = argc > 1 ? argv[1] : "";
+        if (argc == 3 && first == "token" && !std::strcmp(argv[2], "new")) return print_new_token();
+        if (argc == 2 && first == "--version") return std::printf("hairbaked %s\n", HAIRBAKE_VERSION), 0;
+        if (argc != 1 && !(argc == 3 && first == "--config")) {
+            std::fputs(usage, stderr);
+            return 2;
+        }
+        Settings settings = argc == 3 ? read_settings(argv[2]) : Settings();
+        complete(settings);
+        return serve(settings);
+    } catch (const Error& error) {
+        std::fprintf(stderr, "hairbaked: %s\n", error.what());
+        return error.kind() == ErrorKind::usage ? 2 : error.kind() == ErrorKind::bad_input ? 3 : 1;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "hairbaked: %s\n", error.what());
+        return 1;
+    }
+}

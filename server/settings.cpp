@@ -1,0 +1,172 @@
+#include "server/settings.h"
+
+#include <toml++/toml.h>
+#include <algorithm>
+#include <chrono>
+#include <set>
+#include <thread>
+
+#include "core/base/error.h"
+
+namespace hairbake {
+namespace fs = std::filesystem;
+namespace {
+
+[[noreturn]] void refuse(const std::string& field, const std::string& message) {
+    throw Error(ErrorKind::usage, field + " " + message, field);
+}
+
+/// The fields of one table; done() refuses those that nobody asked for.
+class Block {
+public:
+    Block(const toml::table& table, std::string name) : table_(table), name_(std::move(name)) {}
+
+    template <class T, class Set>
+    void read(const char* field, const char* allowed, const Set& set) {
+        asked_.insert(field);
+        const toml::node* node = table_.get(field);
+        if (!node) return;
+        const auto value = node->value_exact<T>();
+        if (!value) refuse(name_ + "." + field, std::string("is not ") + allowed);
+        set(*value);
+    }
+    void text(const char* field, std::string& target) {
+        read<std::string>(field, "a text", [&](const std::string& value) { target = value; });
+    }
+    void path(const char* field, fs::path& target, const fs::path& base) {
+        read<std::string>(field, "a path", [&](const std::string& value) { target = base / value; });
+    }
+    /// A number in [low, high] units.
+    template <class T>
+    void number(const char* field, T& target, std::int64_t low, std::int64_t high, std::uint64_t unit = 1) {
+        read<std::int64_t>(field, "an integer", [&](std::int64_t value) {
+            if (value < low || value > high)
+                refuse(name_ + "." + field, "is " + std::to_string(value) + "; allowed is " + std::to_string(low) +
+                                                " to " + std::to_string(high));
+            target = static_cast<T>(static_cast<std::uint64_t>(value) * unit);
+        });
+    }
+    void ignore(const char* field) { asked_.insert(field); }
+    const toml::node* get(const char* field) {
+        asked_.insert(field);
+        return table_.get(field);
+    }
+    void done() const {
+        for (const auto& [key, value] : table_)
+            if (!asked_.count(std::string(key.str())))
+                refuse(name_.empty() ? std::string(key.str()) : name_ + "." + std::string(key.str()), "is not a field");
+    }
+
+private:
+    const toml::table& table_;
+    std::string name_;
+    std::set<std::string> asked_;
+};
+
+template <class Read>
+void read_block(const toml::table& file, const char* name, const Read& read) {
+    if (!file.contains(name)) return;
+    const toml::table* table = file.get_as<toml::table>(name);
+    if (!table) refuse(name, "is not a table");
+    Block block(*table, name);
+    read(block);
+    block.done();
+}
+
+std::vector<std::string> scopes_of(const toml::node* node) {
+    static const std::set<std::string> known{"read", "upload", "bake", "admin"};
+    std::vector<std::string> scopes;
+    const toml::array* list = node ? node->as_array() : nullptr;
+    if (!list || list->empty()) refuse("token.scopes", "is missing; allowed is a list of read, upload, bake, admin");
+    for (const toml::node& item : *list) {
+        const auto scope = item.value_exact<std::string>();
+        if (!scope || !known.count(*scope))
+            refuse("token.scopes", "holds something else than read, upload, bake, admin");
+        scopes.push_back(*scope);
+    }
+    return scopes;
+}
+
+double seconds_of(const toml::date_time& time) {
+    using namespace std::chrono;
+    const sys_days day = year(time.date.year) / month(time.date.month) / std::chrono::day(time.date.day);
+    const int offset = time.offset ? time.offset->minutes : 0;
+    return static_cast<double>(day.time_since_epoch().count()) * 86400 + time.time.hour * 3600.0 +
+           time.time.minute * 60.0 + time.time.second - offset * 60.0;
+}
+
+TokenSettings read_token(const toml::table& table) {
+    Block block(table, "token");
+    TokenSettings token;
+    block.text("name", token.name);
+    block.text("sha256", token.sha256);
+    token.scopes = scopes_of(block.get("scopes"));
+    block.read<toml::date_time>("expires", "a date and time",
+                                [&](const toml::date_time& value) { token.expires = seconds_of(value); });
+    block.done();
+    if (token.name.empty()) refuse("token.name", "is missing");
+    if (token.sha256.size() != 64)
+        refuse("token.sha256", "is not 64 hexadecimal digits; `hairbaked token new` makes them");
+    return token;
+}
+
+Settings read_tables(const toml::table& file, const fs::path& base) {
+    Settings settings;
+    read_block(file, "listen", [&](Block& block) {
+        block.text("socket", settings.socket);
+        block.text("address", settings.address);
+        block.number("port", settings.port, 0, 65535);
+        block.number("threads", settings.threads, 1, 1024);
+        block.number("waiting", settings.waiting, 1, 65536);
+    });
+    read_block(file, "store", [&](Block& block) {
+        block.path("folder", settings.store, base);
+        block.number("budget_mb", settings.budget_bytes, 1, 1 << 30, 1 << 20);
+        block.number("blob_mb", settings.blob_bytes, 1, 1 << 20, 1 << 20);
+        block.number("upload_lifetime_s", settings.upload_lifetime_s, 1, 366 * 86400);
+    });
+    read_block(file, "workers", [&](Block& block) {
+        block.path("program", settings.worker, base);
+        block.number("count", settings.workers, 0, 1024);
+        block.number("threads", settings.worker_threads, 0, 1024);
+        block.number("memory_mb", settings.memory_bytes, 0, 1 << 24, 1 << 20);
+        block.number("cpu_s", settings.cpu_seconds, 0, 366 * 86400);
+        block.number("wall_s", settings.wall_seconds, 1, 366 * 86400);
+        block.number("max_crashes", settings.max_crashes, 0, 1000);
+    });
+    Block whole(file, "");
+    for (const char* table : {"listen", "store", "workers"}) whole.ignore(table);
+    if (const toml::node* tokens = whole.get("token")) {
+        if (!tokens->is_array_of_tables()) refuse("token", "is not a list of tables: [[token]]");
+        for (const toml::node& token : *tokens->as_array()) settings.tokens.push_back(read_token(*token.as_table()));
+    }
+    whole.done();
+    return settings;
+}
+
+}  // namespace
+
+Settings read_settings(const fs::path& file) {
+    try {
+        return read_tables(toml::parse_file(file.string()), fs::absolute(file).parent_path());
+    } catch (const toml::parse_error& error) {
+        throw Error(ErrorKind::usage, file.string() + " line " + std::to_string(error.source().begin.line) + ": " +
+                                          std::string(error.description()));
+    } catch (const Error& error) {
+        throw Error(ErrorKind::usage, file.string() + ": " + error.what(), error.field());
+    }
+}
+
+void complete(Settings& settings) {
+    const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    if (settings.workers == 0) settings.workers = std::max(1, cores / 2);
+    if (settings.worker_threads == 0) settings.worker_threads = std::max(1, cores / settings.workers);
+    if (settings.worker.empty()) settings.worker = fs::read_symlink("/proc/self/exe").parent_path() / "hairbake-worker";
+    if (settings.socket.empty() && settings.address != "127.0.0.1" && settings.address != "::1")
+        refuse("listen.address",
+               "is " + settings.address + "; allowed is 127.0.0.1 or ::1: nginx is the face to the network");
+    if (!fs::exists(settings.worker)) refuse("workers.program", settings.worker.string() + " does not exist");
+    settings.store = fs::absolute(settings.store);
+}
+
+}  // namespace hairbake

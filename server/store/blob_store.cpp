@@ -1,0 +1,172 @@
+#include "server/store/blob_store.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <system_error>
+#include <unordered_map>
+
+#include "core/base/digest.h"
+#include "core/base/error.h"
+#include "server/store/refusal.h"
+
+namespace hairbake {
+namespace fs = std::filesystem;
+
+bool is_digest(const std::string& text) {
+    return text.size() == 64 && std::all_of(text.begin(), text.end(),
+                                            [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); });
+}
+
+double now() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
+
+BlobStore::BlobStore(const fs::path& folder, Database& database) : folder_(folder), database_(database) {
+    make_folder(folder_ / "blobs");
+    make_folder(folder_ / "tmp");
+    constexpr char digits[] = "0123456789abcdef";
+    for (const char high : std::string(digits))
+        for (const char low : std::string(digits)) make_folder(folder_ / "blobs" / std::string{high, low});
+    sync_folder(folder_ / "blobs");
+    sync_folder(folder_);
+}
+
+fs::path BlobStore::path_of(const std::string& digest) const {
+    return folder_ / "blobs" / digest.substr(0, 2) / digest;
+}
+
+std::vector<std::string> BlobStore::recover() {
+    std::error_code ignored;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "tmp")) fs::remove_all(entry, ignored);
+
+    std::unordered_map<std::string, std::int64_t> rows;
+    database_.read([&](Sql& sql) {
+        for (const SqlRow& row : sql.rows("SELECT sha256, bytes FROM blobs")) rows[row.text(0)] = row.integer(1);
+    });
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_ / "blobs")) {
+        if (entry.is_directory()) continue;
+        const auto row = rows.find(entry.path().filename().string());
+        if (row != rows.end() && static_cast<std::int64_t>(entry.file_size()) == row->second)
+            rows.erase(row);  // as it should be
+        else
+            fs::remove(entry, ignored);
+    }
+    std::vector<std::string> lost;
+    for (const auto& [digest, bytes] : rows) {
+        forget(digest);
+        lost.push_back(digest);
+    }
+    return lost;
+}
+
+std::optional<std::uint64_t> BlobStore::size_of(const std::string& digest) {
+    std::optional<std::uint64_t> bytes;
+    database_.read([&](Sql& sql) {
+        const auto rows = sql.rows("SELECT bytes FROM blobs WHERE sha256 = ?", {digest});
+        if (!rows.empty()) bytes = static_cast<std::uint64_t>(rows[0].integer(0));
+    });
+    return bytes;
+}
+
+std::uint64_t BlobStore::total_bytes() {
+    std::int64_t bytes = 0;
+    database_.read([&](Sql& sql) { bytes = sql.rows("SELECT sum(bytes) FROM blobs").at(0).integer(0); });
+    return static_cast<std::uint64_t>(bytes);
+}
+
+bool BlobStore::put(IncomingFile& file, const std::string& expected) {
+    file.finish();
+    if (!expected.empty() && file.digest() != expected)
+        throw Refusal(Refused::unprocessable,
+                      "the digest of the " + std::to_string(file.bytes()) + " bytes received is " + file.digest() +
+                          "; allowed is " + expected,
+                      "sha256");
+    return adopt(file.path(), file.digest());
+}
+
+bool BlobStore::adopt(const fs::path& file, const std::string& digest) {
+    const auto held = database_.lock();
+    const bool known = size_of(digest).has_value();
+    if (!known) {
+        const auto bytes = static_cast<std::int64_t>(fs::file_size(file));
+        if (::rename(file.c_str(), path_of(digest).c_str()) != 0) throw_store_error(file, errno);
+        sync_folder(path_of(digest).parent_path());
+        database_.write([&](Sql& sql) {
+            sql.run("INSERT INTO blobs VALUES(?, ?, ?, ?)", {digest, bytes, now(), now()});
+        });
+        const std::lock_guard lock(mutex_);
+        verified_.insert(digest);
+    }
+    touch(digest);
+    return !known;
+}
+
+OpenBlob BlobStore::open(const std::string& digest) {
+    if (!is_digest(digest) || !size_of(digest))
+        throw Refusal(Refused::not_found, "there is no blob " + digest.substr(0, 64), "sha256");
+    OpenBlob blob{Descriptor(::open(path_of(digest).c_str(), O_RDONLY | O_CLOEXEC)), 0};
+    struct stat facts {};
+    if (!blob.file || ::fstat(blob.file.get(), &facts) != 0) {
+        if (errno == EMFILE || errno == ENFILE) throw Refusal(Refused::busy, "too many open files");
+        forget(digest);
+        throw LostBlob(digest);
+    }
+    blob.bytes = static_cast<std::uint64_t>(facts.st_size);
+    verify(digest, blob.file.get());
+    touch(digest);
+    return blob;
+}
+
+void BlobStore::verify(const std::string& digest, int descriptor) {
+    {
+        const std::lock_guard lock(mutex_);
+        if (verified_.count(digest)) return;
+    }
+    Digest found;
+    std::vector<std::byte> piece(1 << 18);
+    ssize_t count = 0;
+    for (off_t at = 0; (count = ::pread(descriptor, piece.data(), piece.size(), at)) > 0; at += count)
+        found.add(std::span(piece).first(static_cast<std::size_t>(count)));
+    if (count < 0 || found.hex() != digest) {
+        remove(digest);
+        throw LostBlob(digest);
+    }
+    const std::lock_guard lock(mutex_);
+    verified_.insert(digest);
+}
+
+void BlobStore::remove(const std::string& digest) {
+    const auto held = database_.lock();
+    forget(digest);
+    ::unlink(path_of(digest).c_str());
+}
+
+void BlobStore::forget(const std::string& digest) {
+    database_.write([&](Sql& sql) { sql.run("DELETE FROM blobs WHERE sha256 = ?", {digest}); });
+    const std::lock_guard lock(mutex_);
+    verified_.erase(digest);
+    used_.erase(digest);
+}
+
+void BlobStore::touch(const std::string& digest) {
+    const std::lock_guard lock(mutex_);
+    used_.insert(digest);
+}
+
+void BlobStore::flush_uses() {
+    std::unordered_set<std::string> used;
+    {
+        const std::lock_guard lock(mutex_);
+        used.swap(used_);
+    }
+    if (used.empty()) return;
+    database_.write([&](Sql& sql) {
+        for (const std::string& digest : used) sql.run("UPDATE blobs SET used = ? WHERE sha256 = ?", {now(), digest});
+    });
+}
+
+}  // namespace hairbake

@@ -1,0 +1,88 @@
+// Files named by the digest of their bytes.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+#include "server/store/database.h"
+#include "server/store/file_system.h"
+#include "server/store/incoming_file.h"
+
+namespace hairbake {
+
+/// Whether `text` is 64 lower-case hexadecimal digits.
+bool is_digest(const std::string& text);
+
+/// A blob turned out to be missing or of other bytes than its name says. The store has forgotten it already.
+class LostBlob : public std::runtime_error {
+public:
+    explicit LostBlob(std::string digest)
+        : std::runtime_error("the stored bytes of sha256:" + digest + " were lost or spoiled"),
+          digest_(std::move(digest)) {}
+    const std::string& digest() const { return digest_; }
+
+private:
+    std::string digest_;
+};
+
+struct OpenBlob {
+    Descriptor file;
+    std::uint64_t bytes = 0;
+};
+
+/// `folder`/blobs/ab/<sha256>, `folder`/tmp and the table `blobs`. Thread-safe. How a blob becomes durable stands in
+/// server/README.md.
+class BlobStore {
+public:
+    BlobStore(const std::filesystem::path& folder, Database& database);
+
+    /// At boot, before anything else: empties tmp/, removes files without a row, and forgets rows without a whole file.
+    /// Those digests are returned.
+    std::vector<std::string> recover();
+
+    std::filesystem::path incoming_folder() const { return folder_ / "tmp"; }
+    std::filesystem::path path_of(const std::string& digest) const;
+
+    /// Size in bytes, or nothing when there is no such blob.
+    std::optional<std::uint64_t> size_of(const std::string& digest);
+    std::uint64_t total_bytes();
+
+    /// Takes a received file over under its digest. Throws Refusal(unprocessable) when `expected` is not empty and
+    /// another digest. Returns whether the blob is new.
+    bool put(IncomingFile& file, const std::string& expected);
+
+    /// Takes over a file that is on the disk already (fsync done) and whose digest was checked.
+    bool adopt(const std::filesystem::path& file, const std::string& digest);
+
+    /// Opens a blob; checks its digest when it is the first time since the start. Throws Refusal(not_found), LostBlob.
+    OpenBlob open(const std::string& digest);
+
+    /// Removes row and file.
+    void remove(const std::string& digest);
+
+    /// Notes that blobs were used; written to the database with flush_uses().
+    void touch(const std::string& digest);
+    void flush_uses();
+
+private:
+    void verify(const std::string& digest, int descriptor);
+    void forget(const std::string& digest);
+
+    std::filesystem::path folder_;
+    Database& database_;
+    std::mutex mutex_;  ///< of the two sets
+    std::unordered_set<std::string> verified_, used_;
+};
+
+/// Seconds since 1970.
+double now();
+
+}  // namespace hairbake

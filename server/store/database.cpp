@@ -1,0 +1,166 @@
+#include "server/store/database.h"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <sqlite3.h>
+
+#include <map>
+
+#include "core/base/error.h"
+#include "server/store/schema.h"
+
+namespace hairbake {
+
+bool SqlRow::null(std::size_t column) const { return std::holds_alternative<std::nullptr_t>(values_.at(column)); }
+
+std::string SqlRow::text(std::size_t column) const {
+    const std::string* text = std::get_if<std::string>(&values_.at(column));
+    return text ? *text : std::string();
+}
+
+std::int64_t SqlRow::integer(std::size_t column) const {
+    const std::int64_t* integer = std::get_if<std::int64_t>(&values_.at(column));
+    return integer ? *integer : 0;
+}
+
+double SqlRow::number(std::size_t column) const {
+    const double* number = std::get_if<double>(&values_.at(column));
+    return number ? *number : static_cast<double>(integer(column));
+}
+
+namespace {
+
+[[noreturn]] void fail(const SQLite::Exception& error) {
+    const int code = error.getErrorCode() & 0xff;
+    if (code == SQLITE_FULL)
+        throw Error(ErrorKind::out_of_resources, "the disk of the store is full: the database cannot grow");
+    throw Error(ErrorKind::internal, std::string("the database: ") + error.what());
+}
+
+SqlValue value_of(const SQLite::Column& column) {
+    switch (column.getType()) {
+        case SQLITE_INTEGER:
+            return column.getInt64();
+        case SQLITE_FLOAT:
+            return column.getDouble();
+        case SQLITE_NULL:
+            return nullptr;
+        default:
+            return column.getString();
+    }
+}
+
+void bind(SQLite::Statement& statement, const std::vector<SqlValue>& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const int at = static_cast<int>(i) + 1;
+        if (const auto* integer = std::get_if<std::int64_t>(&values[i]))
+            statement.bind(at, static_cast<int64_t>(*integer));
+        else if (const auto* number = std::get_if<double>(&values[i]))
+            statement.bind(at, *number);
+        else if (const auto* text = std::get_if<std::string>(&values[i]))
+            statement.bind(at, *text);
+        else
+            statement.bind(at);
+    }
+}
+
+}  // namespace
+
+class Database::Connection : public Sql {
+public:
+    explicit Connection(const std::filesystem::path& file)
+        : database(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE) {
+        database.exec("PRAGMA journal_mode = WAL");
+        database.exec("PRAGMA synchronous = FULL");
+        const std::string check = database.execAndGet("PRAGMA quick_check(1)").getString();
+        if (check != "ok") throw Error(ErrorKind::bad_input, check);
+        const int found = database.execAndGet("PRAGMA user_version").getInt();
+        if (found == schema_version) return;
+        if (found != 0)
+            throw Error(ErrorKind::bad_input, "its version is " + std::to_string(found) + "; this program reads " +
+                                                  std::to_string(schema_version));
+        SQLite::Transaction transaction(database);
+        database.exec(schema_statements());
+        database.exec("PRAGMA user_version = " + std::to_string(schema_version));
+        transaction.commit();
+    }
+
+    int run(std::string_view statement, const std::vector<SqlValue>& values) override {
+        try {
+            SQLite::Statement& prepared = prepare(statement, values);
+            const int changed = prepared.exec();
+            prepared.reset();
+            return changed;
+        } catch (const SQLite::Exception& error) {
+            fail(error);
+        }
+    }
+
+    std::vector<SqlRow> rows(std::string_view statement, const std::vector<SqlValue>& values) override {
+        try {
+            SQLite::Statement& prepared = prepare(statement, values);
+            std::vector<SqlRow> rows;
+            while (prepared.executeStep()) {
+                std::vector<SqlValue> row;
+                for (int i = 0; i < prepared.getColumnCount(); ++i) row.push_back(value_of(prepared.getColumn(i)));
+                rows.emplace_back(std::move(row));
+            }
+            prepared.reset();
+            return rows;
+        } catch (const SQLite::Exception& error) {
+            fail(error);
+        }
+    }
+
+    SQLite::Database database;
+
+private:
+    SQLite::Statement& prepare(std::string_view text, const std::vector<SqlValue>& values) {
+        auto found = statements_.find(text);
+        if (found == statements_.end()) {
+            const std::string owned(text);
+            found = statements_.emplace(owned, SQLite::Statement(database, owned)).first;
+        }
+        SQLite::Statement& statement = found->second;
+        statement.tryReset();
+        statement.clearBindings();
+        bind(statement, values);
+        return statement;
+    }
+
+    std::map<std::string, SQLite::Statement, std::less<>> statements_;
+};
+
+Database::Database(const std::filesystem::path& file) {
+    const std::string advice =
+        "; put it aside (with its -wal and -shm) and restore a copy, or start with an empty store and send again what "
+        "is needed";
+    try {
+        connection_ = std::make_unique<Connection>(file);
+    } catch (const SQLite::Exception& error) {
+        throw Error(ErrorKind::bad_input,
+                    "the database " + file.string() + " cannot be opened: " + error.what() + advice);
+    } catch (const Error& error) {
+        throw Error(ErrorKind::bad_input, "the database " + file.string() + " is not whole: " + error.what() + advice);
+    }
+}
+
+Database::~Database() = default;
+
+void Database::write(const std::function<void(Sql&)>& body) {
+    const auto held = lock();
+    try {
+        // Rolled back by its destructor when the body throws.
+        SQLite::Transaction transaction(connection_->database, SQLite::TransactionBehavior::IMMEDIATE);
+        body(*connection_);
+        transaction.commit();
+    } catch (const SQLite::Exception& error) {
+        fail(error);
+    }
+}
+
+void Database::read(const std::function<void(Sql&)>& body) {
+    const auto held = lock();
+    body(*connection_);
+}
+
+}  // namespace hairbake

@@ -1,0 +1,65 @@
+// The SQLite database of the service: one connection, one lock, whole transactions.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <initializer_list>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace hairbake {
+
+using SqlValue = std::variant<std::nullptr_t, std::int64_t, double, std::string>;
+
+/// One row of an answer; columns by their position in the SELECT.
+class SqlRow {
+public:
+    explicit SqlRow(std::vector<SqlValue> values) : values_(std::move(values)) {}
+
+    bool null(std::size_t column) const;
+    std::string text(std::size_t column) const;      ///< "" for NULL
+    std::int64_t integer(std::size_t column) const;  ///< 0 for NULL
+    double number(std::size_t column) const;         ///< 0 for NULL
+
+private:
+    std::vector<SqlValue> values_;
+};
+
+/// Runs statements inside a transaction of Database. Statements are prepared once and kept. A failure is
+/// Error(out_of_resources) for a full disk, Error(internal) otherwise.
+class Sql {
+public:
+    virtual ~Sql() = default;
+    /// How many rows were changed. `?` in `statement` stand for `values` in turn.
+    virtual int run(std::string_view statement, const std::vector<SqlValue>& values = {}) = 0;
+    virtual std::vector<SqlRow> rows(std::string_view statement, const std::vector<SqlValue>& values = {}) = 0;
+};
+
+/// WAL, synchronous FULL: a transaction that has returned is on the disk. Thread-safe; the lock is recursive, but
+/// transactions do not nest.
+class Database {
+public:
+    /// Opens or makes `file` and its tables. Throws Error(bad_input) with what to do when the file is no database of
+    /// this version or not whole.
+    explicit Database(const std::filesystem::path& file);
+    ~Database();
+
+    /// Runs `body` in one transaction: committed when it returns, rolled back when it throws.
+    void write(const std::function<void(Sql&)>& body);
+    /// Runs `body` under the lock; it only reads.
+    void read(const std::function<void(Sql&)>& body);
+    /// Held by who must keep files and rows in step.
+    std::unique_lock<std::recursive_mutex> lock() { return std::unique_lock(mutex_); }
+
+private:
+    class Connection;
+    std::recursive_mutex mutex_;
+    std::unique_ptr<Connection> connection_;
+};
+
+}  // namespace hairbake

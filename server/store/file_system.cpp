@@ -1,0 +1,76 @@
+#include "server/store/file_system.h"
+
+#include <fcntl.h>
+#include <sys/random.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <system_error>
+#include <utility>
+
+#include "core/base/error.h"
+
+namespace hairbake {
+
+void throw_store_error(const std::filesystem::path& file, int error) {
+    const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG || error == ENOMEM || error == EMFILE;
+    const std::string words = std::generic_category().message(error);
+    if (full) throw Error(ErrorKind::out_of_resources, "the store cannot take more: " + words);
+    throw Error(ErrorKind::internal, "the store's " + file.string() + ": " + words);
+}
+
+void write_all(int descriptor, std::span<const std::byte> bytes, const std::filesystem::path& file) {
+    while (!bytes.empty()) {
+        const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) throw_store_error(file, errno);
+        bytes = bytes.subspan(static_cast<std::size_t>(written));
+    }
+}
+
+void sync_file(int descriptor, const std::filesystem::path& file) {
+    if (::fsync(descriptor) != 0) throw_store_error(file, errno);
+}
+
+void sync_folder(const std::filesystem::path& folder) {
+    const Descriptor descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (!descriptor) throw_store_error(folder, errno);
+    sync_file(descriptor.get(), folder);
+}
+
+void make_folder(const std::filesystem::path& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) throw_store_error(folder, error.value());
+}
+
+std::string random_name() {
+    std::array<unsigned char, 16> bits{};
+    if (::getrandom(bits.data(), bits.size(), 0) != static_cast<ssize_t>(bits.size()))
+        throw Error(ErrorKind::internal, "the kernel gives no random bytes");
+    std::string name;
+    for (const unsigned char byte : bits) {
+        char digits[3];
+        std::snprintf(digits, sizeof digits, "%02x", byte);
+        name += digits;
+    }
+    return name;
+}
+
+Descriptor::~Descriptor() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
+    if (this != &other) {
+        if (descriptor_ >= 0) ::close(descriptor_);
+        descriptor_ = other.release();
+    }
+    return *this;
+}
+
+int Descriptor::release() { return std::exchange(descriptor_, -1); }
+
+}  // namespace hairbake

@@ -1,0 +1,43 @@
+// Calls of the file system that matter for what survives a crash.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+
+namespace hairbake {
+
+/// Error(out_of_resources) for a full disk or quota, Error(internal) otherwise, with the system's words.
+[[noreturn]] void throw_store_error(const std::filesystem::path& file, int error);
+
+/// All bytes, or throws.
+void write_all(int descriptor, std::span<const std::byte> bytes, const std::filesystem::path& file);
+
+void sync_file(int descriptor, const std::filesystem::path& file);
+void sync_folder(const std::filesystem::path& folder);
+
+/// Makes the folder and its missing parents.
+void make_folder(const std::filesystem::path& folder);
+
+/// 128 random bits as 32 hexadecimal digits, from the kernel.
+std::string random_name();
+
+/// A file descriptor that closes itself.
+class Descriptor {
+public:
+    explicit Descriptor(int descriptor = -1) : descriptor_(descriptor) {}
+    ~Descriptor();
+    Descriptor(Descriptor&& other) noexcept : descriptor_(other.release()) {}
+    Descriptor& operator=(Descriptor&& other) noexcept;
+
+    int get() const { return descriptor_; }
+    explicit operator bool() const { return descriptor_ >= 0; }
+    int release();
+
+private:
+    int descriptor_;
+};
+
+}  // namespace hairbake

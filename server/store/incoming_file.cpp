@@ -1,0 +1,41 @@
+#include "server/store/incoming_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+
+#include "server/store/file_system.h"
+#include "server/store/refusal.h"
+
+namespace hairbake {
+
+IncomingFile::IncomingFile(const std::filesystem::path& folder, std::uint64_t limit)
+    : path_(folder / random_name()),
+      limit_(limit),
+      descriptor_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0640)) {
+    if (descriptor_ < 0) throw_store_error(path_, errno);
+}
+
+IncomingFile::~IncomingFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    ::unlink(path_.c_str());  // there is none when a store renamed it
+}
+
+void IncomingFile::add(std::span<const std::byte> bytes) {
+    if (bytes.size() > limit_ - bytes_)
+        throw Refusal(Refused::too_large, "the body is longer than " + std::to_string(limit_) + " bytes");
+    write_all(descriptor_, bytes, path_);
+    digest_.add(bytes);
+    bytes_ += bytes.size();
+}
+
+void IncomingFile::finish() {
+    sync_file(descriptor_, path_);
+    const int closed = ::close(descriptor_);
+    descriptor_ = -1;
+    if (closed != 0) throw_store_error(path_, errno);
+    hex_ = digest_.hex();
+}
+
+}  // namespace hairbake

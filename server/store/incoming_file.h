@@ -1,0 +1,41 @@
+// A file that is being received: bytes go to tmp/ and into a digest at once.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "core/base/digest.h"
+
+namespace hairbake {
+
+/// Not thread-safe. The file goes away with its owner unless a store has taken it over.
+class IncomingFile {
+public:
+    /// A new file of a random name in `folder`; at most `limit` bytes may be added.
+    IncomingFile(const std::filesystem::path& folder, std::uint64_t limit);
+    ~IncomingFile();
+    IncomingFile(const IncomingFile&) = delete;
+    IncomingFile& operator=(const IncomingFile&) = delete;
+
+    /// Throws Refusal(too_large) past the limit and Error(out_of_resources) for a full disk; nothing is kept in memory.
+    void add(std::span<const std::byte> bytes);
+
+    /// fsync; then digest(), and nothing may be added any more.
+    void finish();
+
+    const std::filesystem::path& path() const { return path_; }
+    std::uint64_t bytes() const { return bytes_; }
+    const std::string& digest() const { return hex_; }
+
+private:
+    std::filesystem::path path_;
+    std::uint64_t limit_, bytes_ = 0;
+    int descriptor_;
+    Digest digest_;
+    std::string hex_;
+};
+
+}  // namespace hairbake

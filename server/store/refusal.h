@@ -1,0 +1,33 @@
+// A request that the service understands and refuses.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace hairbake {
+
+enum class Refused {
+    malformed,      ///< not what the route takes
+    unprocessable,  ///< well-formed, and a field's value is not allowed
+    not_found,
+    conflict,   ///< with what the service holds now
+    too_large,  ///< more bytes than allowed
+    full,       ///< the store's budget or its disk
+    busy        ///< try again later
+};
+
+/// `field` is the field at fault or empty; the message says what was found and what is allowed.
+class Refusal : public std::runtime_error {
+public:
+    Refusal(Refused why, const std::string& message, std::string field = {})
+        : std::runtime_error(message), why_(why), field_(std::move(field)) {}
+
+    Refused why() const { return why_; }
+    const std::string& field() const { return field_; }
+
+private:
+    Refused why_;
+    std::string field_;
+};
+
+}  // namespace hairbake

@@ -1,0 +1,44 @@
+#include "server/store/schema.h"
+
+namespace hairbake {
+
+// Times are seconds since 1970. Digests and keys are 64 hexadecimal digits. Requests, facts, errors and manifests are
+// JSON.
+const char* schema_statements() {
+    return R"sql(
+CREATE TABLE blobs(sha256 TEXT PRIMARY KEY, bytes INTEGER NOT NULL, created REAL NOT NULL, used REAL NOT NULL)
+    WITHOUT ROWID;
+CREATE TABLE inputs(seq INTEGER PRIMARY KEY, kind TEXT NOT NULL, sha256 TEXT NOT NULL, facts TEXT NOT NULL,
+    thumbnail TEXT, created REAL NOT NULL, UNIQUE(kind, sha256));
+CREATE TABLE names(kind TEXT NOT NULL, path TEXT NOT NULL, version INTEGER NOT NULL, sha256 TEXT NOT NULL,
+    note TEXT NOT NULL, token TEXT NOT NULL, created REAL NOT NULL, PRIMARY KEY(kind, path, version)) WITHOUT ROWID;
+CREATE INDEX names_by_blob ON names(sha256);
+
+CREATE TABLE stages(seq INTEGER PRIMARY KEY, key TEXT NOT NULL UNIQUE, kind TEXT NOT NULL, core_key TEXT NOT NULL,
+    state TEXT NOT NULL, request TEXT NOT NULL, priority INTEGER NOT NULL, attempts INTEGER NOT NULL,
+    crashes INTEGER NOT NULL, error TEXT, manifest TEXT, created REAL NOT NULL, started REAL, finished REAL);
+CREATE INDEX stages_by_state ON stages(state, priority DESC, seq);
+CREATE TABLE stage_inputs(stage TEXT NOT NULL, sha256 TEXT NOT NULL, PRIMARY KEY(stage, sha256)) WITHOUT ROWID;
+CREATE INDEX stage_inputs_by_blob ON stage_inputs(sha256);
+CREATE TABLE stage_files(stage TEXT NOT NULL, name TEXT NOT NULL, sha256 TEXT NOT NULL, bytes INTEGER NOT NULL,
+    PRIMARY KEY(stage, name)) WITHOUT ROWID;
+CREATE INDEX stage_files_by_blob ON stage_files(sha256);
+
+CREATE TABLE bakes(seq INTEGER PRIMARY KEY, id TEXT NOT NULL UNIQUE, state TEXT NOT NULL, request TEXT NOT NULL,
+    names TEXT NOT NULL, hair TEXT, environment TEXT, priority INTEGER NOT NULL, transmittance TEXT, irradiance TEXT,
+    attempts INTEGER NOT NULL, error TEXT, created REAL NOT NULL, finished REAL);
+CREATE INDEX bakes_by_state ON bakes(state, seq);
+CREATE INDEX bakes_by_transmittance ON bakes(transmittance, state);
+CREATE INDEX bakes_by_irradiance ON bakes(irradiance, state);
+CREATE INDEX bakes_by_hair ON bakes(hair, seq);
+CREATE INDEX bakes_by_environment ON bakes(environment, seq);
+CREATE TABLE batches(seq INTEGER PRIMARY KEY, id TEXT NOT NULL UNIQUE, request TEXT NOT NULL, created REAL NOT NULL);
+CREATE TABLE batch_bakes(batch TEXT NOT NULL, bake TEXT NOT NULL, PRIMARY KEY(batch, bake)) WITHOUT ROWID;
+CREATE INDEX batch_bakes_by_bake ON batch_bakes(bake);
+
+CREATE TABLE uploads(id TEXT PRIMARY KEY, bytes INTEGER NOT NULL, sha256 TEXT NOT NULL, metadata TEXT NOT NULL,
+    created REAL NOT NULL, expires REAL NOT NULL) WITHOUT ROWID;
+)sql";
+}
+
+}  // namespace hairbake

@@ -1,0 +1,143 @@
+#include "server/jobs/queue.h"
+
+#include <gtest/gtest.h>
+
+#include "server/store/refusal.h"
+#include "tests/support/temporary_folder.h"
+
+namespace hairbake {
+namespace {
+
+/// A queue without workers: the test plays them.
+class QueueTest : public ::testing::Test {
+protected:
+    static StagePlan stage(const std::string& kind, const std::string& key) {
+        return {kind, key, "core-" + key, "{}", {}};
+    }
+
+    static BakePlan bake(const std::string& id, const std::string& transmittance, const std::string& irradiance,
+                         int priority = 0) {
+        BakePlan plan;
+        plan.id = id;
+        plan.request = "{}";
+        plan.priority = priority;
+        if (!transmittance.empty()) plan.transmittance = stage("transmittance", transmittance);
+        if (!irradiance.empty()) plan.irradiance = stage("irradiance", irradiance);
+        return plan;
+    }
+
+    std::string state(const std::string& table, const std::string& column, const std::string& key) {
+        std::string found;
+        database.read([&](Sql& sql) {
+            found = sql.rows("SELECT state FROM " + table + " WHERE " + column + " = ?", {key}).at(0).text(0);
+        });
+        return found;
+    }
+    std::string bake_state(const std::string& id) { return state("bakes", "id", id); }
+    std::string stage_state(const std::string& key) { return state("stages", "key", key); }
+
+    test_support::TemporaryFolder folder;
+    Database database{folder / "test.db"};
+    BlobStore store{folder / "store", database};
+    Queue queue{database, store, 1};
+};
+
+TEST_F(QueueTest, ABakeIsDoneWhenBothStagesAreAndASharedStageRunsOnce) {
+    queue.submit({bake("a", "T1", "I"), bake("b", "T2", "I")});
+    std::vector<std::string> order;
+    for (int i = 0; i < 3; ++i) {
+        const ClaimedStage claimed = *queue.claim();
+        order.push_back(claimed.key);
+        EXPECT_EQ(bake_state("a"), i < 2 ? "running" : "done");
+        queue.done(claimed, {}, "{}");
+    }
+    EXPECT_EQ(order, (std::vector<std::string>{"T1", "I", "T2"}));  // by age, "I" once
+    EXPECT_EQ(bake_state("a"), "done");
+    EXPECT_EQ(bake_state("b"), "done");
+}
+
+TEST_F(QueueTest, ABakeWhoseStagesAreStoredIsDoneAtOnce) {
+    queue.submit({bake("a", "T", "I")});
+    queue.done(*queue.claim(), {}, "{}");
+    queue.done(*queue.claim(), {}, "{}");
+    const Submitted again = queue.submit({bake("c", "T", "I")}).at(0);
+    EXPECT_EQ(again.state, "done");
+    EXPECT_FALSE(again.already_done);
+    EXPECT_TRUE(queue.submit({bake("a", "T", "I")}).at(0).already_done);
+}
+
+TEST_F(QueueTest, PriorityGoesBeforeAge) {
+    queue.submit({bake("a", "T1", ""), bake("b", "T2", "", 5), bake("c", "T3", "", -5)});
+    queue.submit({bake("d", "T3", "", 10)});  // raises the stage that c waits for, too
+    EXPECT_EQ(queue.claim()->key, "T3");
+    EXPECT_EQ(queue.claim()->key, "T2");
+    EXPECT_EQ(queue.claim()->key, "T1");
+}
+
+TEST_F(QueueTest, AFailedStageFailsItsBakesAndDropsWhatOnlyTheyNeeded) {
+    queue.submit({bake("a", "T1", "I1"), bake("b", "T1", "I2"), bake("c", "T2", "I2")});
+    queue.failed(*queue.claim(), {"bad_input", "broken", "hair"});
+    EXPECT_EQ(bake_state("a"), "failed");
+    EXPECT_EQ(bake_state("b"), "failed");
+    EXPECT_EQ(bake_state("c"), "queued");
+    EXPECT_EQ(stage_state("I1"), "cancelled");
+    EXPECT_EQ(stage_state("I2"), "queued");  // c needs it
+    queue.submit({bake("a", "T1", "I1")});   // asked for again
+    EXPECT_EQ(bake_state("a"), "queued");
+    EXPECT_EQ(stage_state("I1"), "queued");
+}
+
+TEST_F(QueueTest, CancelStopsAStageThatNobodyElseNeeds) {
+    queue.submit({bake("a", "T", ""), bake("b", "T", "I")});
+    const ClaimedStage claimed = *queue.claim();
+    queue.cancel("a");
+    EXPECT_FALSE(*claimed.cancel);  // b needs it
+    queue.cancel("b");
+    EXPECT_TRUE(*claimed.cancel);
+    EXPECT_EQ(stage_state("I"), "cancelled");
+    queue.released(claimed);
+    EXPECT_EQ(stage_state("T"), "cancelled");
+    EXPECT_THROW(queue.cancel("b"), Refusal);
+    EXPECT_THROW(queue.cancel("none"), Refusal);
+}
+
+TEST_F(QueueTest, AStageThatIsAskedForWhileItIsBeingStoppedRunsAgain) {
+    queue.submit({bake("a", "T", "")});
+    const ClaimedStage claimed = *queue.claim();
+    queue.cancel("a");
+    queue.submit({bake("a", "T", "")});
+    queue.released(claimed);
+    EXPECT_EQ(stage_state("T"), "queued");
+    EXPECT_EQ(bake_state("a"), "queued");
+    EXPECT_EQ(queue.claim()->attempt, 2);
+}
+
+TEST_F(QueueTest, ADeadWorkerIsReplacedUntilItDiedTooOften) {
+    queue.submit({bake("a", "T", "")});
+    queue.died(*queue.claim(), "killed");
+    EXPECT_EQ(stage_state("T"), "queued");
+    queue.died(*queue.claim(), "killed");  // max_crashes is 1
+    EXPECT_EQ(bake_state("a"), "failed");
+}
+
+TEST_F(QueueTest, WhatRanAtAKillIsQueuedAtTheNextStart) {
+    queue.submit({bake("a", "T", "I")});
+    queue.done(*queue.claim(), {}, "{}");
+    queue.claim();
+    Queue next(database, store, 1);
+    next.recover({});
+    EXPECT_EQ(stage_state("T"), "done");
+    EXPECT_EQ(stage_state("I"), "queued");
+    EXPECT_EQ(bake_state("a"), "running");  // one of its stages is done
+}
+
+TEST_F(QueueTest, ALostBlobStartsItsStagesAndBakesAgain) {
+    queue.submit({bake("a", "T", "")});
+    queue.done(*queue.claim(), {{"x.npy", std::string(64, 'a'), 1}}, "{}");
+    queue.blob_lost(std::string(64, 'a'));
+    EXPECT_EQ(bake_state("a"), "queued");
+    EXPECT_EQ(queue.claim()->key, "T");
+}
+
+}  // namespace
+}  // namespace hairbake

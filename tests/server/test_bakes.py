@@ -1,0 +1,231 @@
+"""Bakes, batches, names and inputs through the real daemon."""
+import json
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+from harness import PROGRAMS, Daemon, hair_bytes, hdr_bytes, quick_request, sha256, slow_request
+
+
+class Bakes(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.daemon = Daemon().__enter__()
+        cls.hair, cls.sky = cls.daemon.put(hair_bytes()), cls.daemon.put(hdr_bytes())
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.daemon.__exit__()
+
+    def post(self, request, status=202):
+        reply = self.daemon.ask("POST", "/v1/bakes", request)
+        self.assertEqual(reply.status, status, reply.body)
+        return reply
+
+    def bake(self, request):
+        reply = self.daemon.ask("POST", "/v1/bakes", request)
+        self.assertIn(reply.status, (200, 202), reply.body)  # 200: its stages are stored
+        view = self.daemon.wait(reply.json["id"])
+        self.assertEqual(view["state"], "done", view)
+        return view
+
+    def test_gives_the_same_files_as_the_command_line(self):
+        view = self.bake(quick_request(self.hair, self.sky))
+        with tempfile.TemporaryDirectory() as folder:
+            hair, sky, out = (Path(folder) / name for name in ("groom.hair", "sky.hdr", "out"))
+            hair.write_bytes(hair_bytes())
+            sky.write_bytes(hdr_bytes())
+            subprocess.run([PROGRAMS / "hairbake", "bake", "--hair", hair, "--env", sky, "--out", out, "--directions", "16",
+                            "--voxels", "32", "--face-size", "4", "--specular-maps", "3", "--outputs", "npy",
+                            "--set", "transmittance.reference_vertices=0"], check=True, capture_output=True)
+            manifest = json.loads((out / "manifest.json").read_text())
+            self.assertEqual(view["id"], manifest["id"])
+            ours = json.loads(self.daemon.file(view["id"], "manifest.json"))
+            self.assertEqual(ours["stages"], manifest["stages"])
+            for block in ("inputs", "transmittance", "irradiance", "repairs", "warnings", "conventions", "versions"):
+                self.assertEqual(ours[block], manifest[block], block)
+            for file in manifest["files"]:
+                if file["name"] != "preview.png":  # one sheet a stage here, see server/README.md
+                    self.assertEqual(sha256(self.daemon.file(view["id"], file["name"])), file["sha256"])
+
+    def test_files_are_what_the_manifest_says(self):
+        view = self.bake(quick_request(self.hair, self.sky, outputs=["npy", "exr", "hair"]))
+        manifest = json.loads(self.daemon.file(view["id"], "manifest.json"))
+        self.assertEqual(manifest["request"]["hair"], f"sha256:{self.hair}")
+        names = {file["name"] for file in manifest["files"]}
+        self.assertLessEqual({"transmittance.npy", "transmittance.hair", "diffuse.exr", "preview_transmittance.png",
+                              "preview_irradiance.png"}, names)
+        self.assertEqual(names | {"manifest.json"}, {file["name"] for file in view["files"]})
+        for file in manifest["files"]:
+            body = self.daemon.file(view["id"], file["name"])
+            self.assertEqual((sha256(body), len(body)), (file["sha256"], file["bytes"]))
+
+    def test_a_repeated_request_is_answered_from_the_store(self):
+        view = self.bake(quick_request(self.hair, self.sky, irradiance={"exponent": 12}))
+        again = self.post(quick_request(self.hair, self.sky, irradiance={"exponent": 12}), status=200)
+        self.assertEqual(again.json["id"], view["id"])
+        self.assertEqual(again.headers["Location"], f"/v1/bakes/{view['id']}")
+
+    def test_two_bakes_share_the_stage_that_both_need(self):
+        first = self.bake(quick_request(self.hair, self.sky, transmittance={"seed": 7}, irradiance={"exponent": 20}))
+        second = self.bake(quick_request(self.hair, self.sky, transmittance={"seed": 7}, irradiance={"exponent": 21}))
+        self.assertNotEqual(first["id"], second["id"])
+        self.assertEqual(first["stages"][0], second["stages"][0])  # its attempts too: it ran once
+        self.assertEqual(second["stages"][0]["attempts"], 1)
+
+    def test_one_stage_alone(self):
+        for request in (quick_request(self.hair), quick_request(environment=self.sky)):
+            view = self.bake(request)
+            self.assertEqual(len(view["stages"]), 1)
+            self.daemon.file(view["id"], "manifest.json")
+
+    def test_refuses_what_is_wrong_and_names_the_field(self):
+        hair = f"sha256:{self.hair}"
+        for request, field in (({"hair": "/etc/passwd"}, "hair"), ({"hair": "../x"}, "hair"), ({"hair": "sha256:12"}, "hair"),
+                               ({"hair": "sha256:" + "0" * 64}, "hair"), ({"hair": "name:none"}, "hair"),
+                               ({"hair": hair, "colour": 1}, "colour"), ({}, "hair"),
+                               ({"hair": hair, "transmittance": {"voxels": 7}}, "transmittance.voxels"),
+                               ({"hair": hair, "outputs": ["png"]}, "outputs"), ({"hair": hair, "priority": 11}, "priority")):
+            reply = self.daemon.ask("POST", "/v1/bakes", request)
+            self.assertEqual((reply.status, reply.json["field"]), (422, field), reply.body)
+            self.assertEqual(reply.headers["Content-Type"], "application/problem+json")
+        self.assertEqual(self.daemon.ask("POST", "/v1/bakes", "{").status, 400)
+        self.assertEqual(self.daemon.ask("POST", "/v1/bakes", "[" * 100000).status, 400)
+
+    def test_a_hostile_input_fails_its_bake_with_the_reason_and_nothing_else(self):
+        broken = self.daemon.put(hair_bytes()[:200])
+        view = self.daemon.wait(self.post(quick_request(broken, self.sky)).json["id"])
+        self.assertEqual(view["state"], "failed")
+        self.assertIn(f"sha256:{broken}", view["error"]["message"])  # not the path in the store
+        self.assertNotIn(str(self.daemon.path), json.dumps(view))
+        self.bake(quick_request(self.hair, self.sky, irradiance={"exponent": 33}))
+        # Asked for again it starts anew, with the same id.
+        again = self.post(quick_request(broken, self.sky))
+        self.assertEqual((again.json["id"], again.json["attempts"]), (view["id"], 2))
+        self.daemon.wait(view["id"])
+
+    def test_cancel_ends_the_worker_and_a_new_request_starts_anew(self):
+        model = self.daemon.put(hair_bytes(strands=2000, points=60))
+        bake = self.post(slow_request(model)).json["id"]
+        self.daemon.wait_for_worker()
+        reply = self.daemon.ask("DELETE", f"/v1/bakes/{bake}")
+        self.assertEqual((reply.status, reply.json["state"]), (200, "cancelled"))
+        self.daemon.wait_for_worker(running=False)
+        self.assertEqual(self.daemon.ask("DELETE", f"/v1/bakes/{bake}").status, 409)
+        self.assertEqual(self.daemon.ask("GET", f"/v1/bakes/{bake}/files/manifest.json").status, 409)
+        self.assertEqual(self.post(slow_request(model)).json["attempts"], 2)
+        self.daemon.ask("DELETE", f"/v1/bakes/{bake}")
+
+    def test_polling_is_cheap(self):
+        view = self.bake(quick_request(self.hair, self.sky, irradiance={"exponent": 40}))
+        first = self.daemon.ask("GET", f"/v1/bakes/{view['id']}")
+        again = self.daemon.ask("GET", f"/v1/bakes/{view['id']}", headers={"If-None-Match": first.headers["ETag"]})
+        self.assertEqual((again.status, again.body), (304, b""))
+
+    def test_lists_filter_and_page(self):
+        model = self.daemon.put(hair_bytes(seed=5))
+        ids = [self.bake(quick_request(model, transmittance={"seed": s, "direction_set": "random"}))["id"] for s in (1, 2, 3)]
+        page = self.daemon.ask("GET", f"/v1/bakes?model={model}&state=done&limit=2").json
+        self.assertEqual([b["id"] for b in page["bakes"]], ids[:0:-1])  # newest first
+        rest = self.daemon.ask("GET", f"/v1/bakes?model={model}&limit=2&cursor={page['next']}").json
+        self.assertEqual(([b["id"] for b in rest["bakes"]], rest["next"]), (ids[:1], None))
+        self.assertEqual(self.daemon.ask("GET", "/v1/bakes?limit=0").json["field"], "limit")
+
+
+class Rebakes(unittest.TestCase):
+    def test_a_new_lighting_runs_one_stage_for_a_whole_batch(self):
+        with Daemon() as d:
+            models = [d.put(hair_bytes(seed=s)) for s in range(5)]
+            old, new = d.put(hdr_bytes(red=100)), d.put(hdr_bytes(red=200))
+            for model in models:
+                d.ask("POST", "/v1/bakes", quick_request(model, old))
+            for bake in d.ask("GET", "/v1/bakes").json["bakes"]:
+                self.assertEqual(d.wait(bake["id"])["state"], "done")
+            body = {"environment": f"sha256:{new}", "replaces": f"sha256:{old}"}
+            dry = d.ask("POST", "/v1/rebakes?dry_run=1", body).json
+            self.assertEqual(dry, {"bakes": 5, "reused_stages": {"transmittance": 5, "irradiance": 0},
+                                   "computed_stages": {"transmittance": 0, "irradiance": 1}})
+            self.assertEqual(d.ask("GET", f"/v1/bakes?environment={new}").json["bakes"], [])  # a dry run does nothing
+            reply = d.ask("POST", "/v1/rebakes", body)
+            self.assertEqual(reply.status, 202)
+            batch = reply.headers["Location"]
+            members = d.ask("GET", reply.json["links"]["bakes"]).json["bakes"]
+            for bake in members:
+                self.assertEqual(d.wait(bake["id"])["state"], "done")
+            self.assertEqual(d.ask("GET", batch).json["states"]["done"], 5)
+            stages = {s["key"]: s for b in members for s in d.ask("GET", f"/v1/bakes/{b['id']}").json["stages"]}
+            self.assertEqual(len(stages), 6)  # five grooms, one lighting
+            self.assertEqual({s["attempts"] for s in stages.values()}, {1})
+            # The new lighting is in the maps: red is brighter by 200/100, green is as it was.
+            manifests = [json.loads(d.file(b["id"], "manifest.json")) for b in members]
+            before = json.loads(d.file(d.ask("GET", f"/v1/bakes?environment={old}").json["bakes"][0]["id"], "manifest.json"))
+            ratio = [n / o for n, o in zip(manifests[0]["irradiance"]["diffuse"]["mean"], before["irradiance"]["diffuse"]["mean"])]
+            self.assertAlmostEqual(ratio[0], 2.0, delta=1e-5)  # float32 maps
+            self.assertAlmostEqual(ratio[1], 1.0, delta=1e-5)
+            self.assertEqual(d.ask("POST", "/v1/rebakes", {"environment": f"sha256:{new}"}).status, 422)
+
+
+class Names(unittest.TestCase):
+    def test_a_name_keeps_its_versions_and_a_bake_records_which_it_got(self):
+        with Daemon() as d:
+            first, second, hair = d.put(hdr_bytes(red=90)), d.put(hdr_bytes(red=91)), d.put(hair_bytes())
+            for digest, note in ((first, "warm"), (second, "cold"), (second, "again")):
+                reply = d.ask("PUT", "/v1/names/environment/stage1/sunset", {"sha256": digest, "note": note})
+                self.assertEqual(reply.status, 200, reply.body)
+            name = d.ask("GET", "/v1/names/environment/stage1/sunset").json
+            self.assertEqual([(v["version"], v["sha256"], v["note"]) for v in name["versions"]],
+                             [(2, second, "cold"), (1, first, "warm")])
+            for asked, version, digest in (("name:stage1/sunset", 2, second), ("name:stage1/sunset@1", 1, first)):
+                reply = d.ask("POST", "/v1/bakes", {**quick_request(hair), "environment": asked}).json
+                self.assertEqual(reply["environment"], digest)
+                self.assertEqual(reply["names"]["environment"], {"path": "stage1/sunset", "version": version})
+            self.assertEqual(len(d.ask("GET", "/v1/bakes?name=stage1/sunset").json["bakes"]), 2)
+            self.assertEqual(d.ask("GET", "/v1/names/environment").json["names"][0]["version"], 2)
+            for path, status in (("environment/a%2fb", 400), ("environment/a/../b", 400), ("colour/x", 404), ("model/a%20b", 422)):
+                self.assertEqual(d.ask("PUT", f"/v1/names/{path}", {"sha256": first}).status, status, path)
+            self.assertEqual(d.ask("PUT", "/v1/names/model/x", {"sha256": "0" * 64}).status, 422)
+
+
+class Inputs(unittest.TestCase):
+    def test_a_worker_tells_the_facts_of_models_and_environments(self):
+        with Daemon() as d:
+            hair = d.put(hair_bytes(strands=40, points=10))
+            reply = d.ask("POST", "/v1/models", {"sha256": hair})
+            self.assertEqual(reply.status, 201, reply.body)
+            facts = reply.json["facts"]
+            self.assertEqual((facts["strands"], facts["vertices"]), (40, 400))
+            self.assertEqual(d.ask("POST", "/v1/models", {"sha256": hair}).status, 200)  # known
+            picture = d.ask("GET", f"/v1/models/{hair}/thumbnail.png")
+            self.assertEqual((picture.status, picture.body[:8]), (200, b"\x89PNG\r\n\x1a\n"))
+
+            sky = hdr_bytes(red=128, width=16)
+            reply = d.ask("POST", "/v1/environments", sky, {"Content-Type": "application/octet-stream"})
+            self.assertEqual((reply.status, reply.json["id"]), (201, sha256(sky)))
+            facts = reply.json["facts"]
+            # RGBE with exponent 129: mantissa / 256 * 2^(129 - 128)
+            self.assertEqual((facts["width"], facts["height"]), (16, 8))
+            for channel, mantissa in zip(facts["mean_radiance"], (128, 64, 32)):
+                self.assertAlmostEqual(channel, mantissa / 128, delta=1e-6)
+            self.assertEqual(d.ask("GET", f"/v1/environments/{sha256(sky)}/thumbnail.png").status, 200)
+            self.assertEqual([e["id"] for e in d.ask("GET", "/v1/environments").json["environments"]], [sha256(sky)])
+
+            self.assertEqual(d.ask("POST", "/v1/models", {"sha256": sha256(sky)}).status, 422)  # no hair model
+            self.assertEqual(d.ask("POST", "/v1/environments", b"#?RADIANCE\n\n-Y 99999 +X 99999\n",
+                                   {"Content-Type": "application/octet-stream"}).status, 422)
+            self.assertEqual(d.ask("POST", "/v1/models", b"x", {"Content-Type": "text/plain"}).status, 415)
+
+    def test_what_a_live_bake_uses_is_not_deleted(self):
+        with Daemon() as d:
+            model = d.put(hair_bytes(strands=2000, points=60))
+            self.assertEqual(d.ask("POST", "/v1/models", {"sha256": model}).status, 201)
+            bake = d.ask("POST", "/v1/bakes", slow_request(model)).json["id"]
+            self.assertEqual(d.ask("DELETE", f"/v1/models/{model}").status, 409)
+            d.ask("DELETE", f"/v1/bakes/{bake}")
+            self.assertEqual(d.ask("DELETE", f"/v1/models/{model}").status, 204)
+            self.assertEqual(d.ask("GET", f"/v1/models/{model}").status, 404)
+            self.assertEqual(d.ask("GET", f"/v1/blobs/{model}").status, 404)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,243 @@
+"""The rim: routes, framing, ranges, access, uploads."""
+import json
+import re
+import socket
+import unittest
+
+from harness import Daemon, base64_text, hair_bytes, quick_request, sha256
+
+
+def status_of(answer):
+    """Of a raw reply; None when the connection was closed without one."""
+    match = re.match(rb"HTTP/1\.1 (\d{3}) ", answer)
+    return int(match.group(1)) if match else None
+
+
+class Rim(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.daemon = Daemon().__enter__()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.daemon.__exit__()
+
+    def test_every_route_of_the_document_has_rule_limit_and_problem(self):
+        d = self.daemon
+        document = d.ask("GET", "/openapi.json").json
+        self.assertIn("transmittance", document["components"]["schemas"]["BakeRequest"]["properties"])
+        for pattern, operations in document["paths"].items():
+            path = pattern.replace("{sha256}", "0" * 64).replace("{kind}", "model").replace("{path}", "x").replace(
+                "{id}", "x").replace("{name}", "x")
+            methods = {m.upper() for m in operations} | ({"HEAD"} if "get" in operations else set()) | {"OPTIONS"}
+            wrong = next(m for m in ("DELETE", "PATCH", "PUT", "POST") if m not in methods and not (
+                m == "PUT" and "/names/" in path))
+            reply = d.ask(wrong, path)
+            self.assertEqual((reply.status, reply.headers["Content-Type"]), (405, "application/problem+json"), pattern)
+            self.assertEqual(set(reply.headers["Allow"].split(", ")) - {"HEAD"}, methods - {"HEAD"}, pattern)
+            for method, operation in operations.items():
+                if method == "options":
+                    continue
+                takes_body = "requestBody" in operation
+                # The rule: a page of another site may not ask, except what is open to all.
+                reply = d.ask(method.upper(), path, headers={"Host": "evil.example"})
+                if operation["security"]:
+                    self.assertEqual((reply.status, reply.json["type"] if method != "head" else ""),
+                                     (403, "urn:hairbake:problem:no-tokens" if method != "head" else ""), (method, pattern))
+                # The limit: more than it is refused before a byte is read.
+                if method in ("post", "put", "patch"):
+                    head = (f"{method.upper()} {path} HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+                            f"Content-Length: 99999999999999\r\nTus-Resumable: 1.0.0\r\n\r\n").encode()
+                    self.assertEqual(status_of(d.raw(head)), 413, (method, pattern))
+                self.assertTrue(takes_body or method not in ("put", "patch"))
+
+    def test_what_is_not_there_is_a_problem(self):
+        for path in ("/", "/v1", "/v1/bakes/" + "0" * 64, "/v2/bakes", "/v1/blobs/" + "0" * 64, "/v1/batches/x", "/etc/passwd"):
+            reply = self.daemon.ask("GET", path)
+            self.assertEqual((reply.status, reply.headers["Content-Type"]), (404, "application/problem+json"), path)
+            self.assertEqual(reply.json["type"], "urn:hairbake:problem:not-found")
+
+    def test_malformed_requests_get_an_error_or_a_closed_connection(self):
+        digest = sha256(b"hello")
+        put = f"PUT /v1/blobs/{digest} HTTP/1.1\r\nHost: localhost\r\n"
+        get = "GET /healthz HTTP/1.1\r\nHost: localhost\r\n"
+        for name, data in {
+                "both framings": put + "Content-Length: 5\r\nTransfer-Encoding: chunked\r\n\r\n5\r\nhello\r\n0\r\n\r\n",
+                "two lengths": put + "Content-Length: 5\r\nContent-Length: 6\r\n\r\nhello",
+                "length with sign": put + "Content-Length: +5\r\n\r\nhello",
+                "negative length": put + "Content-Length: -5\r\n\r\nhello",
+                "length in hex": put + "Content-Length: 0x5\r\n\r\nhello",
+                "gzip, chunked": put + "Transfer-Encoding: gzip, chunked\r\n\r\n5\r\nhello\r\n0\r\n\r\n",
+                "compressed": put + "Content-Encoding: gzip\r\nContent-Length: 5\r\n\r\nhello",
+                "multipart": put + "Content-Type: multipart/form-data; boundary=x\r\nContent-Length: 5\r\n\r\nhello",
+                "broken chunk": put + "Transfer-Encoding: chunked\r\n\r\nzz\r\nhello\r\n0\r\n\r\n",
+                "no host": "GET /healthz HTTP/1.1\r\n\r\n",
+                "two hosts": get + "Host: other\r\n\r\n",
+                "body of a GET": get + "Content-Length: 5\r\n\r\nhello",
+                "encoded CR LF": get + "X-Test: a%0d%0aX-Evil: 1\r\n\r\n",
+                "many headers": get + "".join(f"X-{i}: 1\r\n" for i in range(10000)) + "\r\n",
+                "long header": get + "X: " + "a" * 10_000_000 + "\r\n\r\n",
+                "long address": "GET /" + "a" * 20000 + " HTTP/1.1\r\nHost: localhost\r\n\r\n",
+                "dots": "GET /v1/blobs/../../etc/passwd HTTP/1.1\r\nHost: localhost\r\n\r\n",
+                "encoded dots": "GET /v1/%2e%2e/x HTTP/1.1\r\nHost: localhost\r\n\r\n",
+                "encoded slash": "GET /v1/blobs%2fx HTTP/1.1\r\nHost: localhost\r\n\r\n",
+                "encoded zero": "GET /v1/%00 HTTP/1.1\r\nHost: localhost\r\n\r\n",
+                "unknown method": "BREW / HTTP/1.1\r\nHost: localhost\r\n\r\n",
+                "trace": "TRACE / HTTP/1.1\r\nHost: localhost\r\n\r\n",
+                "no HTTP": "hello\r\n\r\n",
+        }.items():
+            answer = self.daemon.raw(data.encode())
+            self.assertIn(status_of(answer), (None, 400, 404, 405, 413, 414, 415, 501), name)
+            self.assertNotIn(b"X-Evil", answer)
+        self.assertEqual(self.daemon.ask("HEAD", f"/v1/blobs/{digest}").status, 404)  # none of it was taken
+        self.assertEqual(self.daemon.leftovers(), [])
+
+    def test_a_connection_carries_one_request(self):
+        one = b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n"
+        answer = self.daemon.raw(one + one)  # pipelined
+        self.assertEqual(answer.count(b"HTTP/1.1 200"), 1)
+        self.assertIn(b"Connection: close", answer)
+
+    def test_a_cut_upload_stores_nothing(self):
+        data = b"x" * 100_000
+        digest = sha256(data)
+        with socket.create_connection(("127.0.0.1", self.daemon.port)) as s:
+            s.sendall(f"PUT /v1/blobs/{digest} HTTP/1.1\r\nHost: localhost\r\nContent-Length: {len(data)}\r\n\r\n".encode()
+                      + data[:50_000])
+            s.shutdown(socket.SHUT_WR)
+            self.assertIn(status_of(s.recv(1000)), (400, None))
+        self.assertEqual(self.daemon.ask("HEAD", f"/v1/blobs/{digest}").status, 404)
+
+    def test_a_chunked_body_is_taken_and_its_digest_checked(self):
+        data = b"chunked body"
+        head = "PUT /v1/blobs/{} HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\nExpect: 100-continue\r\n\r\n"
+        body = b"c\r\n" + data + b"\r\n0\r\n\r\n"
+        answer = self.daemon.raw(head.format(sha256(data)).encode(), body, pause=0.2)
+        self.assertTrue(answer.startswith(b"HTTP/1.1 100 Continue\r\n\r\nHTTP/1.1 201"), answer)
+        answer = self.daemon.raw(head.format(sha256(b"other")).encode() + body)
+        self.assertIn(b" 422 ", answer)
+        self.assertEqual(self.daemon.ask("GET", f"/v1/blobs/{sha256(data)}").body, data)
+        self.assertEqual(self.daemon.ask("HEAD", f"/v1/blobs/{sha256(b'other')}").status, 404)
+
+    def test_ranges(self):
+        data = bytes(range(200)) * 10
+        digest = self.daemon.put(data)
+        tag = f'"{digest}"'
+
+        def get(**headers):
+            return self.daemon.ask("GET", f"/v1/blobs/{digest}", headers={k.replace("_", "-"): v for k, v in headers.items()})
+
+        whole = get()
+        self.assertEqual((whole.status, whole.body, whole.headers["ETag"]), (200, data, tag))
+        for text, first, end in (("0-0", 0, 1), ("5-9", 5, 10), ("1990-", 1990, 2000), ("-3", 1997, 2000), ("0-99999", 0, 2000),
+                                 ("-99999", 0, 2000)):
+            part = get(Range=f"bytes={text}")
+            self.assertEqual((part.status, part.body), (206, data[first:end]), text)
+            self.assertEqual(part.headers["Content-Range"], f"bytes {first}-{end - 1}/2000")
+        for text in ("2000-", "2000-2001", "-0"):
+            wrong = get(Range=f"bytes={text}")
+            self.assertEqual((wrong.status, wrong.headers["Content-Range"]), (416, "bytes */2000"), text)
+        self.assertEqual(get(Range="bytes=0-1,5-6").body, data)  # several are answered with the whole
+        self.assertEqual(get(Range="bytes=0-1", If_Range=tag).status, 206)
+        self.assertEqual(get(Range="bytes=0-1", If_Range='"other"').body, data)
+        self.assertEqual(get(If_None_Match=f'W/"x", {tag}').status, 304)
+        head = self.daemon.ask("HEAD", f"/v1/blobs/{digest}")
+        self.assertEqual((head.status, head.headers["Content-Length"], head.body), (200, "2000", b""))
+
+    def test_pages_of_other_sites_are_refused(self):
+        self.assertEqual(self.daemon.ask("GET", "/v1/bakes", headers={"Host": "rebound.example:80"}).status, 403)
+        self.assertEqual(self.daemon.ask("GET", "/v1/bakes", headers={"Origin": "https://evil.example"}).status, 403)
+        own = f"localhost:{self.daemon.port}"
+        self.assertEqual(self.daemon.ask("GET", "/v1/bakes", headers={"Host": own, "Origin": f"http://{own}"}).status, 200)
+
+    def test_metrics_count(self):
+        text = self.daemon.ask("GET", "/metrics").body.decode()
+        self.assertRegex(text, r'hairbake_http_requests_total\{method="[A-Z]+",status="\d+"\} \d')
+        self.assertRegex(text, r'hairbake_bakes\{state="queued"\} 0')
+
+
+class Tokens(unittest.TestCase):
+    def test_scopes_expiry_and_sessions(self):
+        def token(name, text, scopes, more=""):
+            return f'[[token]]\nname = "{name}"\nsha256 = "{sha256(text.encode())}"\nscopes = {json.dumps(scopes)}\n{more}\n'
+
+        tokens = (token("reader", "r", ["read"]) + token("farm", "f", ["read", "upload", "bake"]) +
+                  token("old", "o", ["admin"], "expires = 2020-01-01T00:00:00Z") + token("chief", "c", ["admin"]))
+        with Daemon(tokens=tokens) as d:
+            def ask(method, path, text=None, body=None, **headers):
+                if text:
+                    headers["Authorization"] = f"Bearer {text}"
+                return d.ask(method, path, body, headers)
+
+            self.assertEqual(ask("GET", "/v1/bakes").status, 401)
+            self.assertEqual(ask("GET", "/v1/bakes", "wrong").headers["WWW-Authenticate"], 'Bearer realm="hairbake"')
+            self.assertEqual(ask("GET", "/v1/bakes", "o").status, 401)
+            self.assertEqual(ask("GET", "/v1/bakes", "r", Host="farm.example").status, 200)
+            blob = f"/v1/blobs/{sha256(b'x')}"
+            self.assertEqual([ask("PUT", blob, t, b"x").status for t in "rfc"], [403, 201, 200])
+            self.assertEqual(ask("GET", "/healthz").status, 200)
+            name = ask("PUT", "/v1/names/model/m", "f", json.dumps({"sha256": sha256(b"x")})).json
+            self.assertEqual(name["token"], "farm")
+
+            self.assertEqual(ask("POST", "/v1/session", "wrong").status, 401)
+            cookie = ask("POST", "/v1/session", "r").headers["Set-Cookie"]
+            self.assertIn("HttpOnly; SameSite=Strict", cookie)
+            value = cookie.split(";")[0]
+            self.assertEqual(ask("GET", "/v1/bakes", Cookie=f"a=b; {value}").status, 200)
+            self.assertEqual(ask("PUT", blob, body=b"x", Cookie=value).status, 403)
+            self.assertEqual(ask("GET", "/v1/bakes", Cookie=value, Origin="https://evil.example").status, 403)
+            ask("DELETE", "/v1/session", Cookie=value)
+            self.assertEqual(ask("GET", "/v1/bakes", Cookie=value).status, 401)
+
+
+class Uploads(unittest.TestCase):
+    TUS = {"Tus-Resumable": "1.0.0"}
+
+    def patch(self, d, path, offset, data):
+        return d.ask("PATCH", path, data, {**self.TUS, "Upload-Offset": str(offset),
+                                           "Content-Type": "application/offset+octet-stream"})
+
+    def create(self, d, data, digest=None):
+        return d.ask("POST", "/v1/uploads", headers={**self.TUS, "Upload-Length": str(len(data)),
+                                                     "Upload-Metadata": f"sha256 {base64_text(digest or sha256(data))},name eA=="})
+
+    def test_an_upload_goes_on_after_a_lost_connection_and_a_killed_daemon(self):
+        data = hair_bytes(strands=500)
+        with Daemon() as d:
+            reply = self.create(d, data)
+            self.assertEqual(reply.status, 201, reply.body)
+            path = reply.headers["Location"]
+            self.assertEqual(self.patch(d, path, 0, data[:1000]).headers["Upload-Offset"], "1000")
+            # A connection that breaks in the middle of a PATCH: what came stays.
+            with socket.create_connection(("127.0.0.1", d.port)) as s:
+                s.sendall((f"PATCH {path} HTTP/1.1\r\nHost: localhost\r\nTus-Resumable: 1.0.0\r\nUpload-Offset: 1000\r\n"
+                           f"Content-Type: application/offset+octet-stream\r\nContent-Length: {len(data) - 1000}\r\n\r\n").encode()
+                          + data[1000:3000])
+                s.shutdown(socket.SHUT_WR)
+                s.recv(1000)
+            d.kill()
+            d.start()
+            head = d.ask("HEAD", path, headers=self.TUS)
+            self.assertEqual((head.headers["Upload-Offset"], head.headers["Upload-Length"]), ("3000", str(len(data))))
+            self.assertEqual(self.patch(d, path, 1000, data[1000:]).status, 409)
+            self.assertEqual(self.patch(d, path, 3000, data[3000:]).status, 204)
+            self.assertEqual(d.ask("GET", f"/v1/blobs/{sha256(data)}").body, data)
+            self.assertEqual(d.ask("HEAD", path, headers=self.TUS).status, 404)
+
+    def test_refuses_wrong_uploads(self):
+        with Daemon(config="blob_mb = 1\nupload_lifetime_s = 1") as d:
+            self.assertEqual(d.ask("POST", "/v1/uploads", headers={"Upload-Length": "1"}).status, 412)
+            self.assertEqual(d.ask("POST", "/v1/uploads", headers={**self.TUS, "Upload-Length": "1"}).status, 400)
+            self.assertEqual(d.ask("POST", "/v1/uploads", headers={**self.TUS, "Upload-Length": "2000000"}).status, 413)
+            self.assertEqual(d.ask("OPTIONS", "/v1/uploads").headers["Tus-Extension"], "creation,termination,expiration")
+            path = self.create(d, b"right", sha256(b"other")).headers["Location"]
+            self.assertEqual(self.patch(d, path, 0, b"right!").status, 413)  # beyond its length
+            self.assertEqual(self.patch(d, path, 0, b"right").status, 422)  # of another digest: gone
+            self.assertEqual(d.ask("HEAD", path, headers=self.TUS).status, 404)
+            path = self.create(d, b"given up").headers["Location"]
+            self.assertEqual(d.ask("DELETE", path, headers=self.TUS).status, 204)
+            self.assertEqual(list((d.path / "store/uploads").iterdir()), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
