@@ -1,5 +1,5 @@
 """Sections about the irradiance maps and the decoupling of light and transmittance."""
-from settings import CROWN_VIEW, SKIES
+from settings import CROWN_VIEW, EXPOSURES, SKIES
 
 
 def percent(value):
@@ -124,7 +124,7 @@ def decoupling(scene, page):
         black = ("--no-background", "--mesh", scene.mesh, "--mesh-albedo", "0,0,0")
         lit = ("--env", scene.sky(sky))
         reference = scene.picture(f"reference-{sky}", folder, *black, "--mode", "reference", "--light-samples",
-                                  scene.size.light_samples)
+                                  scene.size.light_samples, exposure=EXPOSURES[sky])
         twice = scene.picture(f"reference-{sky}-twice", folder, *black, "--mode", "reference", "--light-samples",
                               2 * scene.size.light_samples)
         variants = {"maps and A (mode baked)": (folder, ()), "every light, A (mode brute)": (folder, ("--mode", "brute")),
@@ -138,7 +138,7 @@ def decoupling(scene, page):
         noise = (scene.hairbake.diff(reference, twice, scene.beauty_scale)["lit"]["rmse_over_mean"] or 0) / 1.5**0.5
         for name, (source, arguments) in variants.items():
             short = f"decoupled-{sky}-{list(variants).index(name)}"
-            picture = scene.picture(short, source, *black, *arguments)
+            picture = scene.picture(short, source, *black, *arguments, exposure=EXPOSURES[sky])
             figures = scene.hairbake.diff(reference, picture, scene.beauty_scale)
             found = figures["lit"]["rmse_over_mean"] or 0
             table.setdefault(name, []).append(percent(max(0, found**2 - noise**2) ** 0.5))

@@ -4,6 +4,9 @@ from dataclasses import dataclass
 SKIES = {"sky": "sun", "studio": "studio", "overcast": "overcast"}  # file of `hairbake sample` -> name
 
 
+EXPOSURES = {"sky": "0", "studio": "1.5", "overcast": "0.5"}  # stops of the PNG pictures
+
+
 @dataclass
 class Size:
     """Default: a few minutes on two cores."""

@@ -1,6 +1,6 @@
 """Sections about A: what it does, directions, the published estimator, times."""
 from lighting_sections import percent
-from settings import SKIES
+from settings import EXPOSURES, SKIES
 
 
 def with_and_without(scene, page):
@@ -11,8 +11,8 @@ def with_and_without(scene, page):
     for sky, label in SKIES.items():
         folder, _ = scene.bake(f"exact-{sky}", sky, head=True)
         common = ("--mesh", scene.mesh)
-        lit = scene.picture(f"with-{sky}", folder, *common)
-        bare = scene.picture(f"without-{sky}", folder, *common, "--no-transmittance")
+        lit = scene.picture(f"with-{sky}", folder, *common, exposure=EXPOSURES[sky])
+        bare = scene.picture(f"without-{sky}", folder, *common, "--no-transmittance", exposure=EXPOSURES[sky])
         figures = scene.hairbake.diff(lit, bare)
         pictures += [(f"{lit}.png", f"{label}, with A"), (f"{bare}.png", f"{label}, without A")]
         rows.append([label, percent(figures["rmse_over_mean"])])
