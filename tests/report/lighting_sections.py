@@ -23,10 +23,9 @@ def specular_maps(scene, page):
     for maps in (33, 17, 9, 5):
         folder, manifest = scene.bake(f"maps-{maps}", "sky", hair, irradiance__specular_maps=maps)
         if not pictures:
-            brute = scene.picture("specular-brute", folder, *arguments, "--mode", "brute", hair=hair, exposure="2",
-                                  view=CROWN_VIEW)
+            brute = scene.picture("specular-brute", folder, *arguments, "--mode", "brute", hair=hair, view=CROWN_VIEW)
             pictures.append((f"{brute}.png", "every light of the environment, exact kernel"))
-        baked = scene.picture(f"specular-{maps}", folder, *arguments, hair=hair, exposure="2", view=CROWN_VIEW)
+        baked = scene.picture(f"specular-{maps}", folder, *arguments, hair=hair, view=CROWN_VIEW)
         figures = scene.hairbake.diff(brute, baked, scene.specular_scale)
         pictures += [(f"{baked}.png", f"{maps} maps"), (figures["picture"], f"{maps} maps minus every light")]
         rows.append([maps, where_lit(figures), f"{figures['max_abs']:.3g}",
@@ -112,8 +111,8 @@ def decoupling(scene, page):
                  "The method takes the transmittance out of the integral: A(x) times the light, instead of the light "
                  "times the transmittance of its direction. Nobody has published what that costs. Reference: the sum over "
                  "the environment with traced shadow rays inside (mode reference). RMSE over the mean, over the pixels "
-                 "that show hair; the head hides light too. The rows leave one approximation out after another; directional transmittance is "
-                 "baked by the same sweep and put inside the sum.")
+                 "that show hair; the head hides light too. The rows leave one approximation out after another; "
+                 "directional transmittance is baked by the same sweep and put inside the sum.")
     table, shown = {}, []
     # Bakes of hair alone may be lit by any sky.
     traced, _ = scene.bake("traced", head=True, transmittance__method="trace")

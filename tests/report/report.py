@@ -1,6 +1,6 @@
 """Makes the report: pictures, tables and the command line behind each, as build/report/index.html.
 
-Usage: report.py ROOT PROGRAM FOLDER [--full | --tiny] [--data DIR]. Paths are relative to ROOT. FOLDER is made anew.
+Usage: report.py ROOT PROGRAM FOLDER [--full | --tiny] [--data DIR] [--only SECTION...]. Paths are relative to ROOT. FOLDER is made anew.
 Needs Python's standard library and the programs only (oiiotool for the README's pictures).
 """
 import argparse
@@ -30,8 +30,10 @@ def readme_pictures(root, folder):
     (root / folder / "readme").mkdir()
     for name, parts in sheets.items():
         columns = 3 if len(parts) == 6 else 4
-        subprocess.run(["oiiotool", *[str(pictures / part) for part in parts], "--mosaic:pad=4",
-                        f"{columns}x{len(parts) // columns}", "-o", str(folder / "readme" / name)], cwd=root, check=True)
+        if all((root / pictures / part).exists() for part in parts):
+            subprocess.run(["oiiotool", *[str(pictures / part) for part in parts], "--mosaic:pad=4",
+                            f"{columns}x{len(parts) // columns}", "--resize", "75%", "-o", str(folder / "readme" / name)],
+                           cwd=root, check=True)
 
 
 def main():
@@ -43,6 +45,7 @@ def main():
     parser.add_argument("--full", action="store_true", help="also the published models, 0.7 to 1.5 million vertices")
     parser.add_argument("--tiny", action="store_true", help="everything so small that it shows nothing: for the test")
     parser.add_argument("--data", type=Path, help="folder with hair/sintel.hair and env/*.hdr")
+    parser.add_argument("--only", nargs="+", help="names of the sections to make, such as offline_times")
     options = parser.parse_args()
     root, folder = options.root.resolve(), options.folder
     if (root / folder).exists():
@@ -62,9 +65,11 @@ def main():
     for section in (transmittance.with_and_without, lighting.decoupling, lighting.specular_maps, lighting.sh_maps,
                     lighting.map_sizes, lighting.map_update, transmittance.estimators, transmittance.directions,
                     transmittance.offline_times):
+        if options.only and section.__name__ not in options.only:
+            continue
         section(scene, page)
         page.write()
-    if options.data and (options.data / "hair" / "sintel.hair").exists():
+    if options.data and (options.data / "hair" / "sintel.hair").exists() and not options.only:
         real_data(scene, page, options.data)
     readme_pictures(root, folder)
     page.note(f"Made in {time.monotonic() - start:.0f} s.")
