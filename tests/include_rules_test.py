@@ -17,10 +17,11 @@ TABLE = [
     (r"core/irradiance/", [r"core/(base|environment|fiber|irradiance)/"]),
     (r"core/volume/", [r"core/(base|hair|mesh|volume)/"]),
     (r"core/reference/", [r"core/(base|hair|mesh|reference)/"]),  # never volume: the reference is independent of the bake
+    (r"core/render/", [r"core/(base|hair|mesh|environment|fiber|irradiance|reference|render)/"]),
     (r"core/output/", [r"core/(base|hair|mesh|environment|irradiance|volume|reference|output)/",
                        r"core/(bake\w*|request\w*)\.h"]),
     (r"core/[^/]+$", [r"core/"]),
-    (r"clients/", [r"core/(bake\w*|request\w*|manifest|output/manifest|sample|inspect|compare)\.h", r"core/base/",
+    (r"clients/", [r"core/(bake\w*|request\w*|manifest|output/manifest|sample|inspect|compare|render|diff)\.h", r"core/base/",
                    r"clients/"]),
     (r"server/worker/", [r"core/", r"server/worker/"]),
     (r"server/http/", [r"core/(bake\w*|request\w*|manifest)\.h", r"core/base/", r"server/(http|jobs|settings)"]),

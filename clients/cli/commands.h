@@ -17,6 +17,8 @@ void add_bake_command(CLI::App& app, Action& action);
 void add_info_command(CLI::App& app, Action& action);
 void add_sample_command(CLI::App& app, Action& action);
 void add_compare_command(CLI::App& app, Action& action);
+void add_render_command(CLI::App& app, Action& action);
+void add_diff_command(CLI::App& app, Action& action);
 void add_presets_command(CLI::App& app, Action& action);
 
 }  // namespace hairbake

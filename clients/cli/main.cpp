@@ -29,6 +29,8 @@ int main(int argc, char** argv) {
     hairbake::add_info_command(app, action);
     hairbake::add_sample_command(app, action);
     hairbake::add_compare_command(app, action);
+    hairbake::add_render_command(app, action);
+    hairbake::add_diff_command(app, action);
     hairbake::add_presets_command(app, action);
     try {
         app.parse(argc, argv);

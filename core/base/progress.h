@@ -13,7 +13,7 @@ class Progress {
 public:
     virtual ~Progress() = default;
 
-    /// `stage` is one of read_hair, transmittance, reference, read_environment, irradiance, write;
+    /// `stage` is one of read_hair, transmittance, reference, read_environment, irradiance, write, render;
     /// `fraction` in [0, 1] of that stage. May be called often: the receiver thins out. Default: silent.
     virtual void report(std::string_view /*stage*/, double /*fraction*/) {}
 

@@ -23,11 +23,6 @@ namespace {
 
 constexpr int reported_bands = 8;
 
-// Cells scale with the lobe's width, 1 / sqrt(p): 64 at p = 64 and below.
-int light_resolution(double exponent) {
-    return std::clamp(static_cast<int>(std::ceil(8 * std::sqrt(exponent))), 64, 512);
-}
-
 KernelTable kajiya_kay_table(double exponent, int specular_maps) {
     KernelTable table(AngleGrid::for_exponent(exponent));
     table.add_row([](double theta) { return std::sin(theta); });
@@ -155,6 +150,10 @@ void expect(bool ok, const std::string& field, const std::string& found, const s
 }
 
 }  // namespace
+
+int light_resolution(double exponent) {
+    return std::clamp(static_cast<int>(std::ceil(8 * std::sqrt(exponent))), 64, 512);
+}
 
 void validate(const IrradianceSettings& s) {
     const auto in = [](auto value, auto low, auto high) { return value >= low && value <= high; };

@@ -68,6 +68,10 @@ struct IrradianceMaps {
     std::vector<std::string> warnings;
 };
 
+/// Resolution of the light set (light_set.h) that the exact maps sum over: cells scale with the lobe's width, 1 /
+/// sqrt(p); 64 at p = 64 and below.
+int light_resolution(double exponent);
+
 /// Checks every field. Throws Error(usage) naming the first one out of range.
 void validate(const IrradianceSettings& settings);
 

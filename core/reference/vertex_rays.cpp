@@ -1,0 +1,89 @@
+#include "core/reference/vertex_rays.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "core/reference/crossings.h"
+#include "core/reference/own_strand.h"
+
+namespace hairbake {
+namespace {
+
+/// What the filter knows of the ray under way. Embree hands the context back unchanged.
+struct RayContext {
+    RTCIntersectContext embree;
+    const StrandScene* scene;
+    std::uint32_t vertex;
+    AdjacentSegments own;
+    Vec3f direction;
+    std::vector<std::uint32_t>* hit;  ///< segments met; null: the first hit ends the ray
+};
+
+/// Drops hits on the vertex's own strand; when hits are collected, notes every other one and goes on.
+void filter(const RTCFilterFunctionNArguments* arguments) {
+    auto& context = *reinterpret_cast<RayContext*>(arguments->context);
+    const std::uint32_t segment = context.scene->segment_of(RTCHitN_primID(arguments->hit, arguments->N, 0));
+    const bool own = context.own.contains(segment) || enters_from_inside(context.scene->strands(), context.vertex,
+                                                                         context.own, segment, context.direction);
+    if (!own && !context.hit) return;
+    if (!own) context.hit->push_back(segment);
+    arguments->valid[0] = 0;
+}
+
+RTCRay ray_of(const Vec3f& origin, const Vec3f& l) {
+    RTCRay ray{};
+    ray.org_x = origin.x;
+    ray.org_y = origin.y;
+    ray.org_z = origin.z;
+    ray.dir_x = l.x;
+    ray.dir_y = l.y;
+    ray.dir_z = l.z;
+    ray.tfar = std::numeric_limits<float>::infinity();
+    ray.mask = ~0u;
+    return ray;
+}
+
+}  // namespace
+
+VertexRays::VertexRays(const StrandScene& scene, Progress& progress)
+    : scene_(scene),
+      opaque_(std::all_of(scene.strands().opacities.begin(), scene.strands().opacities.end(),
+                          [](float o) { return o == 1; })) {
+    if (!scene.occluder()) return;
+    const auto& positions = scene.strands().positions;
+    grounded_ = ground_points(positions, *scene.occluder(), shadow_scale(positions, *scene.occluder()), progress);
+}
+
+/// Whether the vertex sees past the occluder, from where it stands on it if it does.
+bool VertexRays::past_occluder(std::uint32_t vertex, const Vec3f& l) const {
+    Vec3f origin = scene_.strands().positions[vertex];
+    const auto ground = std::lower_bound(grounded_.begin(), grounded_.end(), vertex,
+                                         [](const GroundedPoint& g, std::uint32_t v) { return g.point < v; });
+    if (ground != grounded_.end() && ground->point == vertex) {
+        if (dot(ground->normal, l) <= 0) return false;
+        origin = ground->origin;
+    }
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRay ray = ray_of(origin * scene_.scale(), l);
+    rtcOccluded1(scene_.occluder_scene(), &context, &ray);
+    return ray.tfar >= 0;
+}
+
+float VertexRays::transmittance(std::uint32_t vertex, const Vec3d& direction) const {
+    const StrandGeometry& strands = scene_.strands();
+    const Vec3f l(direction);
+    if (scene_.occluder() && !past_occluder(vertex, l)) return 0;
+    std::vector<std::uint32_t> hit;
+    RayContext context{{}, &scene_, vertex, adjacent_segments(strands, vertex), l, opaque_ ? nullptr : &hit};
+    rtcInitIntersectContext(&context.embree);
+    context.embree.filter = filter;
+    RTCRay ray = ray_of(strands.positions[vertex] * scene_.scale(), l);
+    rtcOccluded1(scene_.scene(), &context.embree, &ray);
+    if (opaque_) return ray.tfar >= 0 ? 1.0f : 0.0f;
+    return transmittance_of_crossings(strands, strands.positions[vertex], l, hit);
+}
+
+}  // namespace hairbake

@@ -1,0 +1,217 @@
+#include "core/render.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <new>
+#include <numbers>
+#include <optional>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/camera_json.h"
+#include "core/environment/light_set.h"
+#include "core/hair/strand_geometry.h"
+#include "core/hair/tangents.h"
+#include "core/irradiance/added_lights.h"
+#include "core/irradiance/irradiance_maps.h"
+#include "core/output/file_sink.h"
+#include "core/output/image_file.h"
+#include "core/output/tone.h"
+#include "core/render_input.h"
+
+namespace hairbake {
+namespace {
+
+[[noreturn]] void refuse(const std::string& field, const std::string& found, const std::string& allowed) {
+    throw Error(ErrorKind::usage, field + " is " + found + "; allowed is " + allowed, field);
+}
+
+void expect(double value, double low, double high, const char* field) {
+    if (!(value >= low && value <= high))
+        refuse(field, std::to_string(value), std::to_string(low) + " to " + std::to_string(high));
+}
+
+void validate(const RenderRequest& request) {
+    expect(request.frame.width, 1, 16384, "width");
+    expect(request.frame.height, 1, 16384, "height");
+    expect(request.frame.samples, 1, 65536, "samples");
+    expect(request.light_samples, 1, 65536, "light_samples");
+    expect(request.look.albedo, 0, 1, "albedo");
+    expect(request.look.specular, 0, 10, "specular");
+    for (const double channel : request.look.color) expect(channel, 0, 1, "color");
+    for (const double channel : request.look.mesh_albedo) expect(channel, 0, 1, "mesh_albedo");
+}
+
+Vec3d vector_of(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
+
+/// The sum over lights, where the mode or the mesh needs it.
+std::optional<LightSum> make_lights(const RenderInput& input, const Progress& progress) {
+    if (!input.environment) return {};
+    const IrradianceSettings& settings = input.bake.irradiance;
+    LightSet lights = make_light_set(*input.environment, light_resolution(settings.exponent), progress);
+    return LightSum(with_directional_lights(std::move(lights), settings.lights), settings.exponent);
+}
+
+DirectionalTransmittance directional_of(const RenderRequest& request, const RenderInput& input) {
+    const bool sh = request.directional != Directional::bent_cone && !input.sh.empty();
+    const bool cone = !sh && request.directional != Directional::sh && !input.bent_cone.empty();
+    if (!sh && !cone)
+        throw Error(ErrorKind::usage,
+                    "the bake has no such directional transmittance; bake with transmittance.sh_bands (1 to 4) or "
+                    "transmittance.bent_cone",
+                    "mode");
+    DirectionalTransmittance transmittance;
+    transmittance.average = input.average;
+    if (sh) {
+        transmittance.sh = input.sh;
+        transmittance.sh_bands = input.bake.transmittance.sh_bands;
+    } else {
+        transmittance.bent_cone = input.bent_cone;
+    }
+    return transmittance;
+}
+
+Camera camera_of(const RenderRequest& request, const StrandGeometry& strands, const std::optional<TriangleMesh>& mesh) {
+    Vec3f low = strands.bounds_min, high = strands.bounds_max;
+    if (mesh)
+        for (const Vec3f& p : mesh->positions)
+            for (int axis = 0; axis < 3; ++axis) {
+                low[axis] = std::min(low[axis], p[axis]);
+                high[axis] = std::max(high[axis], p[axis]);
+            }
+    const double aspect = double(request.frame.width) / request.frame.height;
+    if (request.camera_file) return read_camera(*request.camera_file, low, high, aspect);
+    return orbit_camera(request.orbit, low, high, aspect);
+}
+
+template <class Value>
+std::string text(const Value& value) {
+    char buffer[64];
+    std::snprintf(buffer, sizeof buffer, "%.9g", double(value));
+    return buffer;
+}
+
+std::string text(const Vec3d& v) { return text(v.x) + " " + text(v.y) + " " + text(v.z); }
+
+std::vector<std::pair<std::string, std::string>> describe(const RenderRequest& request, const RenderInput& input,
+                                                          const Camera& camera, const Vec3d& kd) {
+    constexpr const char* modes[] = {"baked", "brute", "reference", "directional"};
+    constexpr const char* channels[] = {"beauty", "transmittance", "diffuse", "specular", "tangent"};
+    return {{"hairbake:mode", modes[static_cast<int>(request.mode)]},
+            {"hairbake:channel", channels[static_cast<int>(request.frame.channel)]},
+            {"hairbake:samples", text(request.frame.samples)},
+            {"hairbake:lightSamples", text(request.light_samples)},
+            {"hairbake:seed", std::to_string(request.frame.seed)},
+            {"hairbake:kd", text(kd)},
+            {"hairbake:ks", text(request.look.specular)},
+            {"hairbake:exponent", text(input.bake.irradiance.exponent)},
+            {"hairbake:eye", text(camera.eye)},
+            {"hairbake:backward", text(camera.backward)},
+            {"hairbake:up", text(camera.up)},
+            {"hairbake:tangentOfHalfField", text(camera.tangent)}};
+}
+
+/// Calls body(lighting) with the lighting of the mode.
+template <class Body>
+void with_lighting(const RenderRequest& request, const RenderInput& input, const StrandScene& scene,
+                   const std::optional<LightSum>& lights, Progress& progress, const Body& body) {
+    VertexTransmittance average;
+    if (request.transmittance) average.average = input.average;
+    switch (request.mode) {
+        case ShadingMode::baked:
+            return body(*baked_lighting(average, *input.maps));
+        case ShadingMode::brute:
+            return body(*brute_lighting(average, *lights));
+        case ShadingMode::reference:
+            return body(*reference_lighting(VertexRays(scene, progress), average, *lights, request.light_samples));
+        case ShadingMode::directional: {
+            const DirectionalTransmittance transmittance = directional_of(request, input);
+            return body(*directional_lighting(transmittance, *lights));
+        }
+    }
+}
+
+RenderedPicture render_input(const RenderRequest& request, const RenderInput& input, Progress& progress) {
+    const StrandGeometry strands = make_strand_geometry(input.hair, input.bake.strand);
+    const std::vector<Vec3f> tangents = vertex_tangents(input.hair);
+    const StrandScene scene(strands, progress, input.occluder ? &*input.occluder : nullptr);
+    const FirstHits hits(scene, input.mesh ? &*input.mesh : nullptr);
+    const std::optional<LightSum> lights = make_lights(input, progress);
+    const Camera camera = camera_of(request, strands, input.mesh);
+    const Vec3d kd = vector_of(request.look.color) * (request.look.albedo / (std::numbers::pi * std::numbers::pi));
+
+    RenderedPicture picture{
+        request.frame.width, request.frame.height, request.frame.channel, {}, describe(request, input, camera, kd), 0,
+        input.warnings};
+    with_lighting(request, input, scene, lights, progress, [&](const FiberLighting& lighting) {
+        RenderScene shown{hits, tangents, strands, lighting, kd, Vec3d(request.look.specular), nullptr, {}, nullptr};
+        shown.mesh_lights = lights ? &*lights : nullptr;
+        shown.mesh_albedo = vector_of(request.look.mesh_albedo);
+        if (request.background && input.environment) shown.background = &*input.environment;
+        const auto start = std::chrono::steady_clock::now();
+        picture.pixels = render_frame(shown, camera, request.frame, progress);
+        picture.render_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    });
+    return picture;
+}
+
+std::vector<std::uint8_t> screen_bytes(const RenderedPicture& picture, double stops) {
+    std::vector<std::uint8_t> bytes;
+    bytes.reserve(picture.pixels.size() * 3);
+    const auto byte = [](double share) {
+        return static_cast<std::uint8_t>(std::lround(255 * std::clamp(share, 0.0, 1.0)));
+    };
+    for (const Vec3f& pixel : picture.pixels) {
+        Color color = tone(pixel, stops);
+        if (picture.channel == Channel::transmittance) color = {byte(pixel.x), byte(pixel.y), byte(pixel.z)};
+        if (picture.channel == Channel::tangent)
+            color = {byte(0.5 + 0.5 * double(pixel.x)), byte(0.5 + 0.5 * double(pixel.y)),
+                     byte(0.5 + 0.5 * double(pixel.z))};
+        bytes.insert(bytes.end(), color.begin(), color.end());
+    }
+    return bytes;
+}
+
+}  // namespace
+
+RenderedPicture render(const RenderRequest& request, int threads, Progress& progress) {
+    validate(request);
+    RenderedPicture picture;
+    try {
+        with_threads(threads, [&] {
+            const RenderInput input = read_render_input(request, progress);
+            picture = render_input(request, input, progress);
+        });
+    } catch (const std::bad_alloc&) {
+        throw Error(ErrorKind::out_of_resources, "memory ran out");
+    }
+    return picture;
+}
+
+double automatic_exposure(const RenderedPicture& picture) {
+    if (picture.channel == Channel::transmittance || picture.channel == Channel::tangent) return 0;
+    std::vector<float> luminances;
+    for (const Vec3f& pixel : picture.pixels)
+        if (const float value = luminance(pixel); value > 0) luminances.push_back(value);
+    return exposure_for(std::move(luminances));
+}
+
+void write_picture(const RenderedPicture& picture, double stops, const std::filesystem::path& file) {
+    const std::string ending = file.extension().string();
+    std::vector<std::byte> bytes;
+    if (ending == ".exr")
+        bytes = encode_exr(picture.pixels, picture.width, picture.height, picture.metadata);
+    else if (ending == ".png")
+        bytes = encode_png(screen_bytes(picture, stops), picture.width, picture.height, {});
+    else
+        refuse("out", file.string(), "a name that ends in .exr or .png");
+    const std::filesystem::path part = file.parent_path() / (".part-" + file.filename().string());
+    std::filesystem::remove(part);
+    FileSink sink(part);
+    sink.write(bytes);
+    sink.finish();
+    std::filesystem::rename(part, file);
+}
+
+}  // namespace hairbake

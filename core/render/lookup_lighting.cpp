@@ -1,0 +1,58 @@
+// The modes that know A alone: from the maps, and from the lights.
+#include "core/irradiance/lookup.h"
+#include "core/render/fiber_lighting.h"
+
+namespace hairbake {
+namespace {
+
+class BakedLighting : public FiberLighting {
+public:
+    BakedLighting(const VertexTransmittance& transmittance, const IrradianceMaps& maps)
+        : transmittance_(transmittance), maps_(maps) {}
+
+    void light(std::span<const StrandPoint> points, std::span<FiberLight> result,
+               const Progress& progress) const override {
+        progress.check();
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const double a = transmittance_.at(points[i].place);
+            result[i] = {a, look_up_diffuse(maps_, points[i].tangent) * a,
+                         look_up_specular(maps_, points[i].tangent, points[i].to_eye) * a};
+        }
+    }
+
+private:
+    const VertexTransmittance& transmittance_;
+    const IrradianceMaps& maps_;
+};
+
+class BruteLighting : public FiberLighting {
+public:
+    BruteLighting(const VertexTransmittance& transmittance, const LightSum& lights)
+        : transmittance_(transmittance), lights_(lights) {}
+
+    void light(std::span<const StrandPoint> points, std::span<FiberLight> result,
+               const Progress& progress) const override {
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            progress.check();
+            const double a = transmittance_.at(points[i].place);
+            const KernelSums sums = lights_.sum(points[i].tangent, points[i].to_eye);
+            result[i] = {a, sums.diffuse * a, sums.specular * a};
+        }
+    }
+
+private:
+    const VertexTransmittance& transmittance_;
+    const LightSum& lights_;
+};
+
+}  // namespace
+
+std::unique_ptr<FiberLighting> baked_lighting(const VertexTransmittance& transmittance, const IrradianceMaps& maps) {
+    return std::make_unique<BakedLighting>(transmittance, maps);
+}
+
+std::unique_ptr<FiberLighting> brute_lighting(const VertexTransmittance& transmittance, const LightSum& lights) {
+    return std::make_unique<BruteLighting>(transmittance, lights);
+}
+
+}  // namespace hairbake

@@ -1,0 +1,126 @@
+#include "core/render_input.h"
+
+#include <utility>
+
+#include "core/bake.h"
+#include "core/base/digest.h"
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/environment/environment_files.h"
+#include "core/environment/environment_reader.h"
+#include "core/hair/hair_file.h"
+#include "core/mesh/mesh_file.h"
+#include "core/result_reader.h"
+
+namespace hairbake {
+namespace fs = std::filesystem;
+namespace {
+
+bool needs_environment(const RenderRequest& request) {
+    return request.mode != ShadingMode::baked || request.background || request.mesh;
+}
+
+/// The file, after a look at whether it is the one that was baked.
+std::string checked(const std::string& file, const std::string& digest, const std::string& what) {
+    const std::string found = what == "environment" ? digest_of_environment(file) : digest_of_file(file);
+    if (found != digest)
+        throw Error(ErrorKind::bad_input,
+                    file + " is not the " + what + " that the result was baked from (its SHA-256 differs)", what);
+    return file;
+}
+
+/// Where the hair of a result is: as given, or its own copy, or where it was baked from.
+std::string hair_of(const RenderRequest& request, const StoredResult& stored) {
+    if (request.bake.hair) {
+        const std::string digest = digest_of_file(*request.bake.hair);
+        if (digest == stored.hair_file_digest) return *request.bake.hair;
+        return checked(*request.bake.hair, stored.hair_digest, "hair");
+    }
+    if (!stored.hair_file_digest.empty())
+        return checked((fs::path(*request.result) / "transmittance.hair").string(), stored.hair_file_digest, "hair");
+    if (stored.request.hair && fs::exists(*stored.request.hair))
+        return checked(*stored.request.hair, stored.hair_digest, "hair");
+    throw Error(ErrorKind::usage, *request.result + " does not hold its hair model: give the file (--hair)", "hair");
+}
+
+std::string environment_of(const RenderRequest& request, const StoredResult& stored) {
+    const auto& file = request.bake.environment ? request.bake.environment : stored.request.environment;
+    if (!file || !fs::exists(*file))
+        throw Error(ErrorKind::usage,
+                    "the environment that " + *request.result +
+                        " was baked from is needed for the background, a mesh and every mode but baked: give the file "
+                        "(--env)",
+                    "environment");
+    // A result of hair alone may be lit by anything.
+    return stored.environment_digest.empty() ? *file : checked(*file, stored.environment_digest, "environment");
+}
+
+std::string occluder_of(const RenderRequest& request, const StoredResult& stored) {
+    const auto& file = request.bake.occluder ? request.bake.occluder : stored.request.occluder;
+    if (!file || !fs::exists(*file))
+        throw Error(ErrorKind::usage,
+                    "the mode reference needs the occluder that " + *request.result +
+                        " was baked with: give the file (--occluder)",
+                    "occluder");
+    return checked(*file, stored.occluder_digest, "occluder");
+}
+
+RenderInput from_folder(const RenderRequest& request) {
+    StoredResult stored = read_result(*request.result);
+    if (stored.hair_digest.empty())
+        throw Error(ErrorKind::usage, *request.result + " is a bake without hair: there is nothing to show", "result");
+    RenderInput input;
+    input.bake = stored.request;
+    input.bake.hair = hair_of(request, stored);
+    if (needs_environment(request)) input.bake.environment = environment_of(request, stored);
+    if (!stored.occluder_digest.empty() && request.mode == ShadingMode::reference)
+        input.occluder = read_mesh(occluder_of(request, stored));
+    input.hair = read_hair(*input.bake.hair);
+    const bool needs_average = request.mode == ShadingMode::directional || request.transmittance;
+    if (needs_average && stored.average.size() != input.hair.vertex_count())
+        throw Error(ErrorKind::bad_input, *request.result + " has the transmittance of " +
+                                              std::to_string(stored.average.size()) + " vertices, the hair has " +
+                                              std::to_string(input.hair.vertex_count()) +
+                                              "; bake with npy among the outputs");
+    if (request.mode == ShadingMode::baked && !stored.maps)
+        throw Error(ErrorKind::usage,
+                    *request.result + " holds no maps; bake with an environment and npy among the outputs", "result");
+    input.average = std::move(stored.average);
+    input.sh = std::move(stored.sh);
+    input.bent_cone = std::move(stored.bent_cone);
+    input.maps = std::move(stored.maps);
+    return input;
+}
+
+RenderInput from_bake(const RenderRequest& request, Progress& progress) {
+    RenderInput input;
+    input.bake = request.bake;
+    if (!request.bake.hair) throw Error(ErrorKind::usage, "give a result folder, or --hair and --env", "hair");
+    if (!request.bake.environment)
+        throw Error(ErrorKind::usage, "give a result folder, or --hair and --env", "environment");
+    BakeRequest wanted = request.bake;
+    wanted.transmittance.reference_vertices = 0;
+    if (request.mode != ShadingMode::baked) wanted.environment.reset();
+    BakeResult result = bake(wanted, thread_count(), progress);
+    input.hair = result.hair ? std::move(*result.hair) : read_hair(*request.bake.hair);
+    input.occluder = std::move(result.occluder);
+    input.average = std::move(result.transmittance->average);
+    input.sh = std::move(result.transmittance->sh);
+    input.bent_cone = std::move(result.transmittance->bent_cone);
+    input.maps = std::move(result.irradiance);
+    input.warnings = std::move(result.warnings);
+    return input;
+}
+
+}  // namespace
+
+RenderInput read_render_input(const RenderRequest& request, Progress& progress) {
+    RenderInput input = request.result ? from_folder(request) : from_bake(request, progress);
+    if (needs_environment(request))
+        input.environment = read_environment(*input.bake.environment, input.bake.environment_settings, progress);
+    if (request.mesh) input.mesh = read_mesh(*request.mesh);
+    progress.check();
+    return input;
+}
+
+}  // namespace hairbake

@@ -1,0 +1,158 @@
+#include "core/result_reader.h"
+
+#include <cerrno>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "core/base/digest.h"
+#include "core/base/error.h"
+#include "core/output/npy.h"
+#include "core/request_json.h"
+
+namespace hairbake {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& what) {
+    throw Error(ErrorKind::bad_input, file.string() + " " + what);
+}
+
+/// The manifest as JSON; at most 16 MiB (one of 257 maps has 0.3).
+Json read_manifest(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw Error(ErrorKind::bad_input, file.string() + ": " + std::generic_category().message(errno));
+    constexpr std::size_t most = std::size_t(16) << 20;
+    std::string text(most + 1, '\0');
+    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > most) refuse(file, "is longer than a manifest may be (16 MiB)");
+    const Json manifest = Json::parse(text, nullptr, false);
+    if (!manifest.is_object() || manifest.value("format", Json()) != "hairbake result")
+        refuse(file, "is not a manifest of hairbake");
+    return manifest;
+}
+
+/// Files of a result by name, read only when they are what the manifest says.
+class ResultFiles {
+public:
+    ResultFiles(const fs::path& folder, const Json& manifest) : folder_(folder) {
+        for (const Json& entry : manifest.at("files"))
+            digests_[entry.at("name").get<std::string>()] = entry.at("sha256").get<std::string>();
+    }
+
+    std::string digest(const std::string& name) const {
+        const auto found = digests_.find(name);
+        return found == digests_.end() ? std::string() : found->second;
+    }
+
+    /// An empty shape where the result has no such file.
+    NpyArray array(const std::string& name) const {
+        const fs::path file = folder_ / name;
+        if (digest(name).empty()) return {};
+        if (digest_of_file(file) != digest(name))
+            refuse(file, "is not the file that the manifest names: it has changed");
+        NpyArray array = read_npy(file);
+        for (std::size_t i = 0; i < array.values.size(); ++i)
+            if (!std::isfinite(array.values[i])) refuse(file, "is not finite at value " + std::to_string(i));
+        return array;
+    }
+
+    fs::path path(const std::string& name) const { return folder_ / name; }
+
+private:
+    fs::path folder_;
+    std::map<std::string, std::string> digests_;
+};
+
+std::string shape_text(const std::vector<std::size_t>& shape) {
+    std::string text = "[";
+    for (const std::size_t n : shape) text += (text.size() > 1 ? ", " : "") + std::to_string(n);
+    return text + "]";
+}
+
+void expect_shape(const fs::path& file, const std::vector<std::size_t>& found,
+                  const std::vector<std::size_t>& allowed) {
+    if (found != allowed) refuse(file, "has the shape " + shape_text(found) + "; allowed is " + shape_text(allowed));
+}
+
+void read_transmittance(const ResultFiles& files, StoredResult& result) {
+    NpyArray average = files.array("transmittance.npy");
+    if (average.shape.empty()) return;
+    const std::size_t vertices = average.values.size();
+    expect_shape(files.path("transmittance.npy"), average.shape, {vertices});
+    for (const float a : average.values)
+        if (!(a >= 0 && a <= 1))
+            refuse(files.path("transmittance.npy"), "holds " + std::to_string(a) + "; allowed is 0 to 1");
+    result.average = std::move(average.values);
+
+    const auto bands = static_cast<std::size_t>(result.request.transmittance.sh_bands);
+    NpyArray sh = files.array("transmittance_sh.npy");
+    if (!sh.shape.empty()) expect_shape(files.path("transmittance_sh.npy"), sh.shape, {vertices, bands * bands});
+    result.sh = std::move(sh.values);
+    NpyArray cone = files.array("bent_cone.npy");
+    if (!cone.shape.empty()) expect_shape(files.path("bent_cone.npy"), cone.shape, {vertices, 4});
+    result.bent_cone = std::move(cone.values);
+}
+
+CubeTexels texels_of(const NpyArray& array, std::size_t first, std::size_t count) {
+    CubeTexels texels(count);
+    const float* value = array.values.data() + 3 * first;
+    for (Vec3f& texel : texels) {
+        texel = {value[0], value[1], value[2]};
+        value += 3;
+    }
+    return texels;
+}
+
+void read_maps(const ResultFiles& files, StoredResult& result) {
+    const NpyArray diffuse = files.array("diffuse.npy"), specular = files.array("specular.npy");
+    if (diffuse.shape.empty() || specular.shape.empty()) return;
+    const auto n = static_cast<std::size_t>(result.request.irradiance.face_size);
+    const auto maps = static_cast<std::size_t>(result.request.irradiance.specular_maps);
+    expect_shape(files.path("diffuse.npy"), diffuse.shape, {6, n, n, 3});
+    expect_shape(files.path("specular.npy"), specular.shape, {maps, 6, n, n, 3});
+    IrradianceMaps& target = result.maps.emplace();
+    target.face_size = static_cast<int>(n);
+    target.exponent = result.request.irradiance.exponent;
+    const std::size_t texels = 6 * n * n;
+    target.diffuse = texels_of(diffuse, 0, texels);
+    for (std::size_t m = 0; m < maps; ++m) target.specular.push_back(texels_of(specular, m * texels, texels));
+}
+
+std::string input_digest(const Json& manifest, const char* input) {
+    const Json& inputs = manifest.at("inputs");
+    return inputs.contains(input) ? inputs.at(input).at("sha256").get<std::string>() : std::string();
+}
+
+}  // namespace
+
+StoredResult read_result(const fs::path& folder) {
+    const fs::path file = folder / "manifest.json";
+    const Json manifest = read_manifest(file);
+    StoredResult result;
+    try {
+        merge_json(result.request, manifest.at("request").dump(), file.string());
+        validate(result.request);
+        result.hair_digest = input_digest(manifest, "hair");
+        result.environment_digest = input_digest(manifest, "environment");
+        result.occluder_digest = input_digest(manifest, "occluder");
+        const ResultFiles files(folder, manifest);
+        result.hair_file_digest = files.digest("transmittance.hair");
+        read_transmittance(files, result);
+        read_maps(files, result);
+    } catch (const Json::exception& error) {
+        refuse(file, std::string("is not a manifest of hairbake: ") + error.what());
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::usage) throw;
+        refuse(file, std::string("holds a request that cannot be: ") + error.what());
+    }
+    return result;
+}
+
+}  // namespace hairbake

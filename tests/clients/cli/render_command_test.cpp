@@ -1,0 +1,51 @@
+// render and diff.
+#include <gtest/gtest.h>
+
+#include "tests/clients/cli/cli.h"
+
+namespace hairbake::test_support {
+namespace {
+
+TEST(RenderCommand, ShowsAResultInEveryModeAndDiffComparesThem) {
+    const Workshop workshop;
+    ASSERT_EQ(hairbake(workshop.quick_bake()).exit_code, 0);
+    const std::string small = " --size 32x24 --samples 2 --exposure 0";
+    for (const char* mode : {"baked", "brute", "reference"}) {
+        const Finished run =
+            hairbake("render " + workshop.path("out") + " --mesh " + workshop.path("samples/head.obj") + " --out " +
+                     workshop.path(std::string(mode) + ".exr") + " --out " + workshop.path(std::string(mode) + ".png") +
+                     " --mode " + mode + small + " 2>&1");
+        EXPECT_EQ(run.exit_code, 0) << run.output;
+        EXPECT_TRUE(contains(run.output, "32 x 24 pixels")) << run.output;
+    }
+    const std::string two = workshop.path("brute.exr") + " " + workshop.path("reference.exr");
+    const auto report = nlohmann::json::parse(hairbake("diff --json " + two).output);
+    EXPECT_GT(report["rmse"], 0);
+    EXPECT_EQ(report["height"], 24);
+    EXPECT_TRUE(contains(hairbake("diff " + two + " --out " + workshop.path("d.png")).output, "RMSE"));
+    EXPECT_TRUE(std::filesystem::exists(workshop.path("d.png")));
+}
+
+TEST(RenderCommand, BakesInMemoryAndTellsItsProgress) {
+    const Workshop workshop;
+    const Finished run = hairbake("render" + workshop.hair() + workshop.env() + " --out " + workshop.path("a.exr") +
+                                  " --size 24x24 --samples 1 --set transmittance.voxels=32 --progress json");
+    EXPECT_EQ(run.exit_code, 0);
+    EXPECT_TRUE(contains(run.output, "\"stage\":\"render\"")) << run.output;
+    EXPECT_TRUE(contains(run.output, "\"event\":\"done\""));
+}
+
+TEST(RenderCommand, RefusesWhatItCannotDo) {
+    const Workshop workshop;
+    const std::string out = " --out " + workshop.path("a.png");
+    EXPECT_EQ(hairbake("render" + out + " 2>&1").exit_code, 2);
+    EXPECT_EQ(hairbake("render /no/such" + out + " 2>&1").exit_code, 3);
+    EXPECT_EQ(hairbake("render" + workshop.hair() + workshop.env() + out + " --mode magic 2>&1").exit_code, 2);
+    EXPECT_EQ(hairbake("render" + workshop.hair() + workshop.env() + out + " --size 0x5 2>&1").exit_code, 2);
+    EXPECT_EQ(hairbake("render" + workshop.hair() + workshop.env() + out + " --size big 2>&1").exit_code, 2);
+    EXPECT_EQ(hairbake("diff /no/such.exr /no/such.exr 2>&1").exit_code, 3);
+    EXPECT_FALSE(std::filesystem::exists(workshop.path("a.png")));
+}
+
+}  // namespace
+}  // namespace hairbake::test_support
