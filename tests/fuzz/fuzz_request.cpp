@@ -1,0 +1,42 @@
+// Any bytes at all as a request: refused as a usage error, or taken, and then what is written reads the same.
+#include <cstdint>
+#include <cstdlib>
+#include <iostream>
+#include <string_view>
+
+#include "core/base/error.h"
+#include "core/request_json.h"
+#include "core/request_keys.h"
+
+namespace {
+
+using namespace hairbake;
+
+void demand(bool ok, const char* what) {
+    if (ok) return;
+    std::cerr << "broken promise: " << what << "\n";
+    std::abort();
+}
+
+void check_request(const BakeRequest& request) {
+    const std::string text = to_json(request);
+    BakeRequest again;
+    merge_json(again, text, "written");
+    demand(to_json(again) == text, "a written request reads the same");
+    demand(transmittance_key({}, again) == transmittance_key({}, request), "equal requests have equal keys");
+    demand(irradiance_key("", again) == irradiance_key("", request), "equal requests have equal keys");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    BakeRequest request;
+    try {
+        merge_json(request, {reinterpret_cast<const char*>(data), size}, "fuzz");
+        check_request(request);
+        validate(request);
+    } catch (const Error& error) {
+        demand(error.kind() == ErrorKind::usage, "an input's fault is a usage error");
+    }
+    return 0;
+}
