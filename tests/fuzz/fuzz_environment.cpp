@@ -4,26 +4,19 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iostream>
 #include <numbers>
 #include <string>
 
 #include "core/environment/environment_reader.h"
 #include "core/environment/light_set.h"
 #include "core/environment/sh_projection.h"
+#include "tests/fuzz/demand.h"
 
 namespace {
 
 using namespace hairbake;
-
-void demand(bool ok, const char* what) {
-    if (ok) return;
-    std::cerr << "broken promise: " << what << "\n";
-    std::abort();
-}
 
 // One file for the whole run, of this process.
 const std::filesystem::path& picture() {

@@ -1,22 +1,15 @@
 // Any bytes at all as a HAIR file: refused as bad input, or read, baked into strands and written back unchanged.
 #include <cstdint>
-#include <cstdlib>
-#include <iostream>
 #include <sstream>
 
 #include "core/base/error.h"
 #include "core/hair/hair_file.h"
 #include "core/hair/strand_geometry.h"
+#include "tests/fuzz/demand.h"
 
 namespace {
 
 using namespace hairbake;
-
-void demand(bool ok, const char* what) {
-    if (ok) return;
-    std::cerr << "broken promise: " << what << "\n";
-    std::abort();
-}
 
 /// `body` succeeds, or fails as bad input and nothing else.
 template <class Body>

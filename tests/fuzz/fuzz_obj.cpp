@@ -1,23 +1,16 @@
 // Any bytes at all as an OBJ file: refused as bad input, or read as a mesh whose every index and number is sound.
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
-#include <iostream>
 
 #include "core/base/error.h"
 #include "core/mesh/grounding.h"
 #include "core/mesh/mesh_file.h"
 #include "core/mesh/mesh_topology.h"
+#include "tests/fuzz/demand.h"
 
 namespace {
 
 using namespace hairbake;
-
-void demand(bool ok, const char* what) {
-    if (ok) return;
-    std::cerr << "broken promise: " << what << "\n";
-    std::abort();
-}
 
 void check_mesh(const TriangleMesh& mesh) {
     demand(!mesh.triangles.empty(), "a mesh has triangles");

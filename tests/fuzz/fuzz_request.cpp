@@ -1,22 +1,15 @@
 // Any bytes at all as a request: refused as a usage error, or taken, and then what is written reads the same.
 #include <cstdint>
-#include <cstdlib>
-#include <iostream>
 #include <string_view>
 
 #include "core/base/error.h"
 #include "core/request_json.h"
 #include "core/request_keys.h"
+#include "tests/fuzz/demand.h"
 
 namespace {
 
 using namespace hairbake;
-
-void demand(bool ok, const char* what) {
-    if (ok) return;
-    std::cerr << "broken promise: " << what << "\n";
-    std::abort();
-}
 
 void check_request(const BakeRequest& request) {
     const std::string text = to_json(request);

@@ -2,26 +2,19 @@
 // rest is: the manifest, or one of the .npy files beside a manifest that gives its digest, so that its bytes are read.
 #include <array>
 #include <cstdint>
-#include <cstdlib>
 #include <fstream>
-#include <iostream>
 #include <string>
 #include <string_view>
 
 #include "core/base/digest.h"
 #include "core/base/error.h"
 #include "core/result_reader.h"
+#include "tests/fuzz/demand.h"
 #include "tests/support/temporary_folder.h"
 
 namespace {
 
 using namespace hairbake;
-
-void demand(bool ok, const char* what) {
-    if (ok) return;
-    std::cerr << "broken promise: " << what << "\n";
-    std::abort();
-}
 
 void put(const std::filesystem::path& file, std::string_view bytes) {
     std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));

@@ -1,22 +1,15 @@
 // Any bytes at all as a TressFX file: refused as bad input, or read, made into strands and written as HAIR.
 #include <cstdint>
-#include <cstdlib>
-#include <iostream>
 #include <sstream>
 
 #include "core/base/error.h"
 #include "core/hair/hair_file.h"
 #include "core/hair/strand_geometry.h"
+#include "tests/fuzz/demand.h"
 
 namespace {
 
 using namespace hairbake;
-
-void demand(bool ok, const char* what) {
-    if (ok) return;
-    std::cerr << "broken promise: " << what << "\n";
-    std::abort();
-}
 
 void check_model(const HairModel& model, std::size_t file_size) {
     const std::size_t v = model.vertex_count();
