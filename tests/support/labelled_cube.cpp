@@ -55,6 +55,27 @@ Vec3f labelled_radiance(const Vec3d& direction) {
     return labelled_colour(direction);
 }
 
+std::vector<Vec3d> labelled_directions() {
+    std::vector<Vec3d> directions;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const double sign : {1.0, -1.0})
+            for (const double u : {-0.9, 0.0, 0.9})
+                for (const double v : {-0.9, 0.0, 0.9}) {
+                    Vec3d d;
+                    d[axis] = sign;
+                    d[(axis + 1) % 3] = u;
+                    d[(axis + 2) % 3] = v;
+                    directions.push_back(d);
+                }
+    return directions;
+}
+
+Vec3f texel_towards(const EnvironmentMap& map, const Vec3d& direction) {
+    const MapPoint p = point_of(map, direction);
+    const int x = std::min(int(p.x), map.width - 1), y = std::min(int(p.y), map.height - 1);
+    return map.pixels[std::size_t(y) * map.width + x];
+}
+
 CubeTexels labelled_cube(int face_size) {
     CubeTexels texels;
     texels.reserve(std::size_t(cube_faces) * face_size * face_size);

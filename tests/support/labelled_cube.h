@@ -2,7 +2,10 @@
 // writer of cubes and lat-longs.
 #pragma once
 
+#include <vector>
+
 #include "core/environment/cube_map.h"
+#include "core/environment/environment_map.h"
 
 namespace hairbake {
 
@@ -18,6 +21,14 @@ Vec3f labelled_radiance(const Vec3d& direction);
 
 /// The colour of labelled_radiance without name and arrow.
 Vec3f labelled_colour(const Vec3d& direction);
+
+/// Below each face's name, beside the middle of every edge and every corner of each face: 6 (1 + 4 + 4) directions
+/// whose radiance is labelled_colour. 0.9 of the way to an edge is far from the lines at 0.75 and 1 where colours
+/// change.
+std::vector<Vec3d> labelled_directions();
+
+/// The texel of `map` that `direction` meets.
+Vec3f texel_towards(const EnvironmentMap& map, const Vec3d& direction);
 
 /// labelled_radiance at the centres of the texels. Legible from faces of 22 on, and crisp at multiples of it.
 CubeTexels labelled_cube(int face_size);

@@ -55,33 +55,10 @@ std::string refusal(const std::filesystem::path& path, const std::string& layout
     return "taken";
 }
 
-Vec3f radiance_in(const EnvironmentMap& map, const Vec3d& direction) {
-    const MapPoint p = point_of(map, direction);
-    const int x = std::min(int(p.x), map.width - 1), y = std::min(int(p.y), map.height - 1);
-    return map.pixels[std::size_t(y) * map.width + x];
-}
-
-// Below each face's name, beside the middle of every edge and every corner of each face: 6 (1 + 4 + 4) directions whose
-// colours are those of labelled_colour, known by hand from the signs. 0.9 of the way to an edge is far from the lines
-// at 0.75 and 1 where colours change: 3 texels of the cube, 2 of the lat-long map.
-std::vector<Vec3d> known_directions() {
-    std::vector<Vec3d> directions;
-    for (int axis = 0; axis < 3; ++axis)
-        for (const double sign : {1.0, -1.0})
-            for (const double u : {-0.9, 0.0, 0.9})
-                for (const double v : {-0.9, 0.0, 0.9}) {
-                    Vec3d d;
-                    d[axis] = sign;
-                    d[(axis + 1) % 3] = u;
-                    d[(axis + 2) % 3] = v;
-                    directions.push_back(d);
-                }
-    return directions;
-}
-
+// The directions are far from where colours change: 3 texels of the cube, 2 of the lat-long map.
 void expect_labelled(const EnvironmentMap& map, const Matrix3& rotation = rotation_matrix({})) {
-    for (const Vec3d& d : known_directions())
-        EXPECT_EQ(radiance_in(map, transform(rotation, d)), labelled_colour(d))
+    for (const Vec3d& d : labelled_directions())
+        EXPECT_EQ(texel_towards(map, transform(rotation, d)), labelled_colour(d))
             << map.layout << ": " << d.x << ' ' << d.y << ' ' << d.z;
 }
 
@@ -92,7 +69,7 @@ TEST(LabelledCube, ItsColoursTellEveryDirectionOfTheTestApart) {
     EXPECT_EQ(labelled_colour({0, -1, 0.9}), (Vec3f{0.5f, 1 / 16.0f, 1}));
     EXPECT_EQ(labelled_colour({3, 3.1, 2.9}), (Vec3f{1, 1, 1}));
     std::set<std::array<float, 3>> colours;
-    for (const Vec3d& d : known_directions()) {
+    for (const Vec3d& d : labelled_directions()) {
         const Vec3f c = labelled_colour(d);
         colours.insert({c.x, c.y, c.z});
         if (c != labelled_radiance(d)) ADD_FAILURE() << "a label covers " << d.x << ' ' << d.y << ' ' << d.z;

@@ -22,19 +22,9 @@ IrradianceMaps labelled_maps(int size) {
 
 // Faces' lower middles, edges and corners, away from where colours change (labelled_cube.h).
 void expect_labelled(const EnvironmentMap& map) {
-    for (int axis = 0; axis < 3; ++axis)
-        for (const double sign : {1.0, -1.0})
-            for (const double u : {-0.9, 0.0, 0.9})
-                for (const double v : {-0.9, 0.0, 0.9}) {
-                    Vec3d d;
-                    d[axis] = sign;
-                    d[(axis + 1) % 3] = u;
-                    d[(axis + 2) % 3] = v;
-                    const MapPoint p = point_of(map, d);
-                    const int x = std::min(int(p.x), map.width - 1), y = std::min(int(p.y), map.height - 1);
-                    EXPECT_LT(length(map.pixels[std::size_t(y) * map.width + x] - labelled_colour(d)), 1e-6)
-                        << map.layout << ": " << d.x << ' ' << d.y << ' ' << d.z;
-                }
+    for (const Vec3d& d : labelled_directions())
+        EXPECT_LT(length(texel_towards(map, d) - labelled_colour(d)), 1e-6)
+            << map.layout << ": " << d.x << ' ' << d.y << ' ' << d.z;
 }
 
 TEST(LabelledMaps, StripAndLatLongShowEveryDirectionItsOwnLabel) {
