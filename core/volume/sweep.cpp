@@ -96,16 +96,20 @@ void add_slab(const SliceLayout& layout, std::uint32_t tile, std::size_t at, int
     }
 }
 
+/// Where the rays stored from `base` on pass position u of slice position s: ray i takes [i, i + 1).
+template <class V>
+HWY_INLINE V ray_at(V u, V s, float slope, int base) {
+    const F d;
+    return hn::Sub(hn::NegMulAdd(s, hn::Set(d, slope), u), hn::Set(d, static_cast<float>(base)));
+}
+
 /// Optical depth of a group of slots along one path: the nearest ray before the slice, then the own voxel.
 template <class V>
 HWY_INLINE V depth_at(const RayPath& path, const float* depth, const float* slab, V u, V v, V s, V inside,
                       hn::Vec<I> texel) {
     const F d;
     const I di;
-    const auto ray_u =
-        hn::Sub(hn::NegMulAdd(s, hn::Set(d, path.slope_u), u), hn::Set(d, static_cast<float>(path.base_u)));
-    const auto ray_v =
-        hn::Sub(hn::NegMulAdd(s, hn::Set(d, path.slope_v), v), hn::Set(d, static_cast<float>(path.base_v)));
+    const auto ray_u = ray_at(u, s, path.slope_u, path.base_u), ray_v = ray_at(v, s, path.slope_v, path.base_v);
     const auto column = hn::ConvertTo(di, ray_u), row = hn::ConvertTo(di, ray_v);  // both are positive
     const auto at = hn::Add(hn::Mul(row, hn::Set(di, path.stride)), column);
     const auto before = hn::GatherIndex(d, depth, at);
@@ -166,10 +170,7 @@ HWY_INLINE V receiver_depth(const RayPath& path, const float* depth, const float
                             hn::Vec<I> texel) {
     const F d;
     const I di;
-    const auto ray_u =
-        hn::Sub(hn::NegMulAdd(s, hn::Set(d, path.slope_u), u), hn::Set(d, static_cast<float>(path.base_u)));
-    const auto ray_v =
-        hn::Sub(hn::NegMulAdd(s, hn::Set(d, path.slope_v), v), hn::Set(d, static_cast<float>(path.base_v)));
+    const auto ray_u = ray_at(u, s, path.slope_u, path.base_u), ray_v = ray_at(v, s, path.slope_v, path.base_v);
     const auto zero = hn::Zero(d);
     const auto met = hn::And(hn::And(hn::Ge(ray_u, zero), hn::Lt(ray_u, hn::Set(d, static_cast<float>(path.stride)))),
                              hn::And(hn::Ge(ray_v, zero), hn::Lt(ray_v, hn::Set(d, static_cast<float>(path.rows)))));
