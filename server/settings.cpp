@@ -124,6 +124,8 @@ Settings read_tables(const toml::table& file, const fs::path& base) {
         block.number("budget_mb", settings.budget_bytes, 1, 1 << 30, 1 << 20);
         block.number("blob_mb", settings.blob_bytes, 1, 1 << 20, 1 << 20);
         block.number("upload_lifetime_s", settings.upload_lifetime_s, 1, 366 * 86400);
+        block.number("open_uploads", settings.open_uploads, 1, 1'000'000);
+        block.number("keep_failed_s", settings.keep_failed_s, 1, 3660ll * 86400);
     });
     read_block(file, "workers", [&](Block& block) {
         block.path("program", settings.worker, base);

@@ -29,6 +29,8 @@ struct Settings {
     std::uint64_t budget_bytes = 200ull << 30;
     std::uint64_t blob_bytes = 4ull << 30;  ///< of one blob or upload
     double upload_lifetime_s = 24 * 3600;   ///< of an upload that does not grow
+    int open_uploads = 256;                 ///< unfinished uploads of one token
+    double keep_failed_s = 30 * 86400;      ///< how long failed and cancelled bakes and ended batches are remembered
     // [workers]
     std::filesystem::path worker;  ///< hairbake-worker; by default beside the daemon
     int workers = 0;               ///< at once; 0: half the cores, at least 1

@@ -41,12 +41,14 @@ const char* title_of(int status) {
             return "Range not satisfiable";
         case 422:
             return "Not acceptable as it is";
+        case 429:
+            return "Too many";
         case 501:
             return "Not implemented";
         case 503:
             return "Busy";
         case 507:
-            return "The store is full";
+            return "The store takes no more";
         default:
             return "Internal error";
     }
@@ -64,6 +66,8 @@ HttpReply problem_of(const Refusal& refusal) {
             return problem(409, "conflict", refusal.what(), refusal.field());
         case Refused::too_large:
             return problem(413, "too-large", refusal.what(), refusal.field());
+        case Refused::too_many:
+            return problem(429, "too-many", refusal.what(), refusal.field()).with("Retry-After", "60");
         case Refused::full:
             return problem(507, "full", refusal.what(), refusal.field());
         default:

@@ -72,7 +72,8 @@ HttpReply create(Service& service, HttpRequest& request) {
     const std::uint64_t bytes = length_header(request, "Upload-Length");
     service.receive(bytes);  // whether there is room
     const std::string metadata = request.header("Upload-Metadata").value_or("");
-    const UploadState state = service.uploads().create(bytes, metadata_value(metadata, "sha256"), metadata);
+    const UploadState state = 
+        service.uploads().create(bytes, metadata_value(metadata, "sha256"), metadata, request.caller);
     return tus_reply(201)
         .with("Location", "/v1/uploads/" + state.id)
         .with("Upload-Offset", "0")

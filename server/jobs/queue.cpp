@@ -91,7 +91,10 @@ void Queue::add_stage(Sql& sql, const StagePlan& stage, int priority) {
 Submitted Queue::add_bake(Sql& sql, const BakePlan& plan) {
     const auto rows = sql.rows("SELECT state FROM bakes WHERE id = ?", {plan.id});
     const std::string state = rows.empty() ? "" : rows[0].text(0);
-    if (state == "done") return {plan.id, state, true};
+    if (state == "done") {
+        for (const StagePlan* stage : plan.stages()) touch_stage(sql, stage->key);
+        return {plan.id, state, true};
+    }
     for (const StagePlan* stage : plan.stages()) add_stage(sql, *stage, plan.priority);
     if (rows.empty())
         sql.run(
@@ -111,17 +114,15 @@ Submitted Queue::add_bake(Sql& sql, const BakePlan& plan) {
     return {plan.id, after, false};
 }
 
+bool Queue::note_done(Sql& sql, const BakePlan& plan) {
+    if (sql.rows("SELECT 1 FROM bakes WHERE id = ? AND state = 'done'", {plan.id}).empty()) return false;
+    for (const StagePlan* stage : plan.stages()) touch_stage(sql, stage->key);
+    return true;
+}
+
 std::vector<Submitted> Queue::submit(const std::vector<BakePlan>& plans, const std::string& batch,
                                      const std::string& batch_request) {
     std::vector<Submitted> answers;
-    if (plans.size() == 1 && batch.empty()) {  // the common case of a build farm that asks again: nothing is written
-        database_.read([&](Sql& sql) {
-            if (sql.rows("SELECT 1 FROM bakes WHERE id = ? AND state = 'done'", {plans[0].id}).empty()) return;
-            answers.push_back({plans[0].id, "done", true});
-            for (const StagePlan* stage : plans[0].stages()) touch_stage(sql, stage->key);
-        });
-        if (!answers.empty()) return answers;
-    }
     database_.write([&](Sql& sql) {
         for (const BakePlan& plan : plans) answers.push_back(add_bake(sql, plan));
         if (batch.empty()) return;

@@ -70,6 +70,7 @@ public:
     void stop();
 
 private:
+    std::optional<Answer> answer_if_done(const std::string& body);
     void look_after();
 
     const Settings settings_;

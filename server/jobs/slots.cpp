@@ -77,18 +77,31 @@ void Slots::work() {
     for (;;) try {
             const std::optional<ClaimedStage> stage = queue_.claim();
             if (!stage) return;
-            try {
-                run(*stage);
-            } catch (const Error& error) {
-                queue_.failed(*stage, {word_for(error.kind()), error.what(), error.field()});
-            } catch (const std::exception& error) {
-                queue_.failed(*stage, {"internal", error.what(), ""});
-            }
+            run_to_the_end(*stage);
+            evict(database_, store_, budget_);
         } catch (const std::exception& error) {
-            // The database itself: the stage stays `running` and is found at the next start.
-            spdlog::error("a worker slot: {}", error.what());
+            spdlog::error("a worker slot: {}", error.what());  // the database takes nothing
             std::this_thread::sleep_for(std::chrono::seconds(1));
             if (queue_.stopping()) return;
+        }
+}
+
+/// However a stage ends, it is written down: again and again while the database takes nothing. A stage that a stop
+/// leaves `running` is found at the next start.
+void Slots::run_to_the_end(const ClaimedStage& stage) {
+    StageError failure;
+    try {
+        return run(stage);
+    } catch (const Error& error) {
+        failure = {word_for(error.kind()), error.what(), error.field()};
+    } catch (const std::exception& error) {
+        failure = {"internal", error.what(), ""};
+    }
+    while (!queue_.stopping()) try {
+            return queue_.failed(stage, failure);
+        } catch (const std::exception& error) {
+            spdlog::error("the end of stage {} cannot be written down: {}", stage.key.substr(0, 12), error.what());
+            std::this_thread::sleep_for(std::chrono::seconds(1));
         }
 }
 
@@ -165,7 +178,6 @@ void Slots::store_result(const ClaimedStage& stage, const fs::path& folder) {
     const auto held = database_.lock();  // no eviction may come between the blobs and the rows that refer to them
     for (const StageFile& file : files) store_.adopt(folder / file.name, file.sha256);
     queue_.done(stage, files, text);
-    evict(database_, store_, budget_);
 }
 
 }  // namespace hairbake

@@ -20,6 +20,7 @@ public:
 
 private:
     void work();
+    void run_to_the_end(const ClaimedStage& stage);
     void run(const ClaimedStage& stage);
     std::string task_for(const ClaimedStage& stage, const std::filesystem::path& folder);
     void remove_spoiled_inputs(const std::vector<std::string>& digests);

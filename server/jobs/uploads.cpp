@@ -31,8 +31,8 @@ private:
     const std::string id_;
 };
 
-Uploads::Uploads(Database& database, BlobStore& store, fs::path folder, double lifetime_s, std::uint64_t most_bytes)
-    : database_(database), store_(store), folder_(std::move(folder)), lifetime_s_(lifetime_s), most_bytes_(most_bytes) {
+Uploads::Uploads(Database& database, BlobStore& store, fs::path folder, const Limits& limits)
+    : database_(database), store_(store), folder_(std::move(folder)), limits_(limits) {
     make_folder(folder_);
 }
 
@@ -71,21 +71,34 @@ void Uploads::expire() {
         }
 }
 
-UploadState Uploads::create(std::uint64_t bytes, const std::string& sha256, const std::string& metadata) {
-    if (bytes > most_bytes_)
+/// Who sends at once may get a few more than allowed: it is no exact limit.
+void Uploads::check_count(const std::string& token) {
+    std::int64_t open = 0;
+    database_.read([&](Sql& sql) {
+        open = sql.rows("SELECT count(*) FROM uploads WHERE token = ?", {token}).at(0).integer(0);
+    });
+    if (open >= limits_.most_open)
+        throw Refusal(Refused::too_many, "there are " + std::to_string(open) + " unfinished uploads of this token; allowed are " +
+                                             std::to_string(limits_.most_open) + ": finish some or delete them");
+}
+
+UploadState Uploads::create(std::uint64_t bytes, const std::string& sha256, const std::string& metadata,
+                            const std::string& token) {
+    if (bytes > limits_.most_bytes)
         throw Refusal(Refused::too_large, "Upload-Length is " + std::to_string(bytes) + "; allowed is up to " +
-                                              std::to_string(most_bytes_) + " bytes");
+                                              std::to_string(limits_.most_bytes) + " bytes");
     if (!is_digest(sha256))
         throw Refusal(Refused::malformed,
                       "Upload-Metadata lacks sha256: the digest of the whole file as 64 hexadecimal digits",
                       "Upload-Metadata");
-    UploadState state{random_name(), metadata, bytes, 0, now() + lifetime_s_};
+    check_count(token);
+    UploadState state{random_name(), metadata, bytes, 0, now() + limits_.lifetime_s};
     const Descriptor file(::open((folder_ / state.id).c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0640));
     if (!file) throw_store_error(folder_ / state.id, errno);
     sync_folder(folder_);
     database_.write([&](Sql& sql) {
-        sql.run("INSERT INTO uploads VALUES(?, ?, ?, ?, ?, ?)",
-                {state.id, static_cast<std::int64_t>(bytes), sha256, metadata, now(), state.expires});
+        sql.run("INSERT INTO uploads VALUES(?, ?, ?, ?, ?, ?, ?)",
+                {state.id, static_cast<std::int64_t>(bytes), sha256, metadata, now(), state.expires, token});
     });
     return state;
 }
@@ -122,7 +135,7 @@ Uploads::Appended Uploads::append(const std::string& id, std::uint64_t offset,
     });
     sync_file(file.get(), path);
     if (size == state.bytes) return complete(id);
-    const double expires = now() + lifetime_s_;
+    const double expires = now() + limits_.lifetime_s;
     database_.write([&](Sql& sql) { sql.run("UPDATE uploads SET expires = ? WHERE id = ?", {expires, id}); });
     return {size, expires, {}};
 }

@@ -26,17 +26,22 @@ class Uploads {
 public:
     using Receiver = std::function<void(std::span<const std::byte>)>;
 
-    /// `lifetime_s` of an upload that does not grow; `most_bytes` of one upload.
-    Uploads(Database& database, BlobStore& store, std::filesystem::path folder, double lifetime_s,
-            std::uint64_t most_bytes);
+    struct Limits {
+        double lifetime_s = 0;         ///< of an upload that does not grow
+        std::uint64_t most_bytes = 0;  ///< of one upload
+        int most_open = 0;             ///< unfinished uploads of one token
+    };
+    Uploads(Database& database, BlobStore& store, std::filesystem::path folder, const Limits& limits);
 
     /// At boot: files without a row go, and rows whose file has become a blob already.
     void recover();
     /// Removes what has expired.
     void expire();
 
-    /// `sha256` is what the whole file must have. Throws Refusal.
-    UploadState create(std::uint64_t bytes, const std::string& sha256, const std::string& metadata);
+    /// `sha256` is what the whole file must have; `token` names who sends it. Throws Refusal, (too_many) when that
+    /// token has too many unfinished uploads.
+    UploadState create(std::uint64_t bytes, const std::string& sha256, const std::string& metadata,
+                       const std::string& token);
     UploadState get(const std::string& id);
     /// Appends what `read` gives to its receiver, makes it durable, and makes the whole a blob when it is complete
     /// (then the upload is gone and is_blob() is its digest). Throws Refusal(conflict) when `offset` is not the
@@ -52,13 +57,13 @@ public:
 private:
     struct Busy;
     std::uint64_t size_on_disk(const std::string& id) const;
+    void check_count(const std::string& token);
     Appended complete(const std::string& id);
 
     Database& database_;
     BlobStore& store_;
     std::filesystem::path folder_;
-    double lifetime_s_;
-    std::uint64_t most_bytes_;
+    const Limits limits_;
     std::mutex mutex_;
     std::set<std::string> busy_;
 };

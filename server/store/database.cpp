@@ -33,6 +33,8 @@ namespace {
     const int code = error.getErrorCode() & 0xff;
     if (code == SQLITE_FULL)
         throw Error(ErrorKind::out_of_resources, "the disk of the store is full: the database cannot grow");
+    if (code == SQLITE_READONLY || code == SQLITE_IOERR || code == SQLITE_CANTOPEN)
+        throw Error(ErrorKind::out_of_resources, std::string("the database cannot be written: ") + error.what());
     throw Error(ErrorKind::internal, std::string("the database: ") + error.what());
 }
 
@@ -67,19 +69,21 @@ void bind(SQLite::Statement& statement, const std::vector<SqlValue>& values) {
 
 class Database::Connection : public Sql {
 public:
-    explicit Connection(const std::filesystem::path& file)
-        : database(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE) {
+    Connection(const std::filesystem::path& file, int flags) : database(file.string(), flags) {}
+
+    /// Settings, check and tables of the connection that writes.
+    void prepare_file() {
         database.exec("PRAGMA journal_mode = WAL");
         database.exec("PRAGMA synchronous = FULL");
         const std::string check = database.execAndGet("PRAGMA quick_check(1)").getString();
         if (check != "ok") throw Error(ErrorKind::bad_input, check);
         const int found = database.execAndGet("PRAGMA user_version").getInt();
         if (found == schema_version) return;
-        if (found != 0)
-            throw Error(ErrorKind::bad_input, "its version is " + std::to_string(found) + "; this program reads " +
+        if (found < 0 || found > schema_version)
+            throw Error(ErrorKind::bad_input, "its version is " + std::to_string(found) + "; this program reads up to " +
                                                   std::to_string(schema_version));
         SQLite::Transaction transaction(database);
-        database.exec(schema_statements());
+        for (int from = found; from < schema_version; ++from) database.exec(schema_statements(from));
         database.exec("PRAGMA user_version = " + std::to_string(schema_version));
         transaction.commit();
     }
@@ -135,7 +139,9 @@ Database::Database(const std::filesystem::path& file) {
         "; put it aside (with its -wal and -shm) and restore a copy, or start with an empty store and send again what "
         "is needed";
     try {
-        connection_ = std::make_unique<Connection>(file);
+        writer_ = std::make_unique<Connection>(file, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+        writer_->prepare_file();
+        reader_ = std::make_unique<Connection>(file, SQLite::OPEN_READONLY);
     } catch (const SQLite::Exception& error) {
         throw Error(ErrorKind::bad_input,
                     "the database " + file.string() + " cannot be opened: " + error.what() + advice);
@@ -150,8 +156,8 @@ void Database::write(const std::function<void(Sql&)>& body) {
     const auto held = lock();
     try {
         // Rolled back by its destructor when the body throws.
-        SQLite::Transaction transaction(connection_->database, SQLite::TransactionBehavior::IMMEDIATE);
-        body(*connection_);
+        SQLite::Transaction transaction(writer_->database, SQLite::TransactionBehavior::IMMEDIATE);
+        body(*writer_);
         transaction.commit();
     } catch (const SQLite::Exception& error) {
         fail(error);
@@ -159,8 +165,19 @@ void Database::write(const std::function<void(Sql&)>& body) {
 }
 
 void Database::read(const std::function<void(Sql&)>& body) {
-    const auto held = lock();
-    body(*connection_);
+    const std::unique_lock held(reading_);
+    if (in_read_) return body(*reader_);  // a part of the reading around it
+    struct Reading {
+        bool& now;
+        explicit Reading(bool& flag) : now(flag) { now = true; }
+        ~Reading() { now = false; }
+    } const reading{in_read_};
+    try {
+        SQLite::Transaction transaction(reader_->database);  // its end gives the state free; there is nothing to commit
+        body(*reader_);
+    } catch (const SQLite::Exception& error) {
+        fail(error);
+    }
 }
 
 }  // namespace hairbake

@@ -1,4 +1,4 @@
-// The SQLite database of the service: one connection, one lock, whole transactions.
+// The SQLite database of the service: one connection that writes, one that reads, whole transactions.
 #pragma once
 
 #include <cstdint>
@@ -40,8 +40,8 @@ public:
     virtual std::vector<SqlRow> rows(std::string_view statement, const std::vector<SqlValue>& values = {}) = 0;
 };
 
-/// WAL, synchronous FULL: a transaction that has returned is on the disk. Thread-safe; the lock is recursive, but
-/// transactions do not nest.
+/// WAL, synchronous FULL: a transaction that has returned is on the disk. Thread-safe; the locks are recursive, but
+/// transactions do not nest. Who reads does not wait for who writes, whose commits wait for the disk.
 class Database {
 public:
     /// Opens or makes `file` and its tables. Throws Error(bad_input) with what to do when the file is no database of
@@ -51,15 +51,16 @@ public:
 
     /// Runs `body` in one transaction: committed when it returns, rolled back when it throws.
     void write(const std::function<void(Sql&)>& body);
-    /// Runs `body` under the lock; it only reads.
+    /// Runs `body` on one state of what is committed; it only reads. It may not write or take lock() inside.
     void read(const std::function<void(Sql&)>& body);
-    /// Held by who must keep files and rows in step.
-    std::unique_lock<std::recursive_mutex> lock() { return std::unique_lock(mutex_); }
+    /// Held by who must keep files and rows in step: nobody else writes meanwhile.
+    std::unique_lock<std::recursive_mutex> lock() { return std::unique_lock(writing_); }
 
 private:
     class Connection;
-    std::recursive_mutex mutex_;
-    std::unique_ptr<Connection> connection_;
+    std::recursive_mutex writing_, reading_;  ///< in this order
+    std::unique_ptr<Connection> writer_, reader_;
+    bool in_read_ = false;  ///< under reading_
 };
 
 }  // namespace hairbake

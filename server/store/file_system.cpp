@@ -16,8 +16,10 @@ namespace hairbake {
 
 void throw_store_error(const std::filesystem::path& file, int error) {
     const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG || error == ENOMEM || error == EMFILE;
+    const bool closed = error == EROFS || error == EACCES || error == EPERM || error == EIO;
     const std::string words = std::generic_category().message(error);
     if (full) throw Error(ErrorKind::out_of_resources, "the store cannot take more: " + words);
+    if (closed) throw Error(ErrorKind::out_of_resources, "the store cannot be written: " + words);
     throw Error(ErrorKind::internal, "the store's " + file.string() + ": " + words);
 }
 

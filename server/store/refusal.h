@@ -12,6 +12,7 @@ enum class Refused {
     not_found,
     conflict,   ///< with what the service holds now
     too_large,  ///< more bytes than allowed
+    too_many,   ///< of something that one token may have; fewer, or later
     full,       ///< the store's budget or its disk
     busy        ///< try again later
 };

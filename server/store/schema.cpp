@@ -4,7 +4,8 @@ namespace hairbake {
 
 // Times are seconds since 1970. Digests and keys are 64 hexadecimal digits. Requests, facts, errors and manifests are
 // JSON.
-const char* schema_statements() {
+const char* schema_statements(int from) {
+    if (from == 1) return "ALTER TABLE uploads ADD COLUMN token TEXT NOT NULL DEFAULT ''";
     return R"sql(
 CREATE TABLE blobs(sha256 TEXT PRIMARY KEY, bytes INTEGER NOT NULL, created REAL NOT NULL, used REAL NOT NULL)
     WITHOUT ROWID;

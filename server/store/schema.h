@@ -3,9 +3,9 @@
 
 namespace hairbake {
 
-inline constexpr int schema_version = 1;
+inline constexpr int schema_version = 2;
 
-/// Statements that make all tables in an empty database.
-const char* schema_statements();
+/// Statements that bring a database of the version `from` to `from` + 1; version 0 is an empty one.
+const char* schema_statements(int from);
 
 }  // namespace hairbake

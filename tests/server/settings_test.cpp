@@ -27,6 +27,8 @@ TEST_F(SettingsTest, TheDocumentedFileHasEveryDefault) {
     EXPECT_EQ(from_file.budget_bytes, defaults.budget_bytes);
     EXPECT_EQ(from_file.blob_bytes, defaults.blob_bytes);
     EXPECT_EQ(from_file.upload_lifetime_s, defaults.upload_lifetime_s);
+    EXPECT_EQ(from_file.open_uploads, defaults.open_uploads);
+    EXPECT_EQ(from_file.keep_failed_s, defaults.keep_failed_s);
     EXPECT_EQ(from_file.memory_bytes, defaults.memory_bytes);
     EXPECT_EQ(from_file.cpu_seconds, defaults.cpu_seconds);
     EXPECT_EQ(from_file.wall_seconds, defaults.wall_seconds);

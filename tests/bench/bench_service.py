@@ -1,0 +1,94 @@
+#!/usr/bin/env python3
+"""Figures of the real daemon: done requests posted again, and a new lighting for many grooms.
+
+bench_service.py [submit] [rebake]; both without arguments. HAIRBAKE_PROGRAMS is the folder of the programs.
+"""
+import json
+import socket
+import statistics
+import sys
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "server"))
+from harness import Daemon, hair_bytes, hdr_bytes, quick_request  # noqa: E402
+
+SUBMISSIONS, GROOMS = 10_000, 1_000
+
+
+def exchange(port, request):
+    """One request on a connection of its own, as the daemon wants it; the whole reply."""
+    with socket.create_connection(("127.0.0.1", port)) as connection:
+        connection.sendall(request)
+        reply = b""
+        while piece := connection.recv(65536):
+            reply += piece
+        return reply
+
+
+def times_of(port, request, count, status):
+    seconds = []
+    for _ in range(count):
+        begin = time.perf_counter()
+        reply = exchange(port, request)
+        seconds.append(time.perf_counter() - begin)
+        assert reply.startswith(b"HTTP/1.1 %d " % status), reply[:200]
+    return seconds
+
+
+def show(what, seconds):
+    ordered = sorted(seconds)
+    print(f"{what}: median {statistics.median(ordered) * 1e3:.3f} ms, "
+          f"p99 {ordered[int(len(ordered) * 0.99)] * 1e3:.3f} ms ({len(ordered)} requests)", flush=True)
+
+
+def bench_submit():
+    with Daemon() as d:
+        body = json.dumps(quick_request(d.put(hair_bytes()), d.put(hdr_bytes()))).encode()
+        bake = d.ask("POST", "/v1/bakes", body, {"Content-Type": "application/json"}).json["id"]
+        assert d.wait(bake)["state"] == "done"
+        post = (b"POST /v1/bakes HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: %d\r\n\r\n"
+                % len(body)) + body
+        show("GET /healthz", times_of(d.port, b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n", 2000, 200))
+        show("GET /v1/bakes/{id}", times_of(d.port, f"GET /v1/bakes/{bake} HTTP/1.1\r\nHost: localhost\r\n\r\n".encode(), 2000, 200))
+        show("POST /v1/bakes, done before (target: 1 ms)", times_of(d.port, post, SUBMISSIONS, 200))
+
+
+def seconds_until_done(d, batch):
+    begin = time.perf_counter()
+    while True:
+        states = d.ask("GET", batch).json["states"]
+        if states["done"] == sum(states.values()):
+            return time.perf_counter() - begin
+        assert states["failed"] == 0, states
+        time.sleep(0.02)
+
+
+def bench_rebake():
+    with Daemon(workers=2) as d:
+        old, new, alone = (d.put(hdr_bytes(red=red)) for red in (100, 101, 102))
+        begin = time.perf_counter()
+        for seed in range(GROOMS):
+            reply = d.ask("POST", "/v1/bakes", quick_request(d.put(hair_bytes(strands=4, points=4, seed=seed)), old))
+            assert reply.status in (200, 202), reply.body
+        while d.ask("GET", "/v1/bakes?state=queued&limit=1").json["bakes"] or \
+                d.ask("GET", "/v1/bakes?state=running&limit=1").json["bakes"]:
+            time.sleep(0.5)
+        print(f"{GROOMS} grooms baked once: {time.perf_counter() - begin:.1f} s", flush=True)
+        begin = time.perf_counter()
+        d.wait(d.ask("POST", "/v1/bakes", quick_request(environment=alone)).json["id"])
+        stage = time.perf_counter() - begin
+        begin = time.perf_counter()
+        reply = d.ask("POST", "/v1/rebakes", {"environment": f"sha256:{new}", "replaces": f"sha256:{old}"})
+        assert reply.status == 202, reply.body
+        posted = time.perf_counter() - begin
+        seconds_until_done(d, reply.headers["Location"])
+        total = time.perf_counter() - begin
+        print(f"{reply.json['bakes']} grooms under a new lighting: {total:.2f} s (the request {posted:.2f} s); one irradiance stage "
+              f"alone {stage:.2f} s; more than that by {total - stage:.2f} s (target: 10 s)", flush=True)
+
+
+if __name__ == "__main__":
+    benches = {"submit": bench_submit, "rebake": bench_rebake}
+    for name in sys.argv[1:] or benches:
+        benches[name]()
