@@ -60,9 +60,11 @@ void merge_object(BakeRequest& request, const Json& object, const std::string& b
     }
 }
 
-Json to_object(const BakeRequest& request) {
+/// All fields, or those of one block ("strand").
+Json to_object(const BakeRequest& request, const std::string& block = {}) {
     Json object = Json::object();
     for (const RequestField& field : request_fields()) {
+        if (!block.empty() && !field.path.starts_with(block + ".")) continue;
         std::string pointer = "/" + field.path;
         for (char& c : pointer)
             if (c == '.') c = '/';
@@ -127,13 +129,13 @@ std::vector<std::string> field_paths() {
 }
 
 std::string canonical_transmittance_settings(const BakeRequest& request) {
-    const Json all = to_object(request);
-    const nlohmann::json sorted = {{"strand", all["strand"]}, {"transmittance", all["transmittance"]}};
+    nlohmann::json sorted = to_object(request, "transmittance");
+    sorted["strand"] = to_object(request, "strand")["strand"];
     return sorted.dump();
 }
 
 std::string canonical_irradiance_settings(const BakeRequest& request) {
-    return nlohmann::json(to_object(request)["irradiance"]).dump();
+    return nlohmann::json(to_object(request, "irradiance")["irradiance"]).dump();
 }
 
 }  // namespace hairbake

@@ -8,7 +8,9 @@
 
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <thread>
@@ -29,6 +31,7 @@ using namespace hairbake;
 
 constexpr const char* usage = R"(hairbaked [--config FILE]   serve; without a file, the defaults hold
 hairbaked token new         print a new token and the lines for the configuration
+hairbaked routes            print what it answers: method, address, scope, limit of the body in bytes, media types
 hairbaked --version
 )";
 
@@ -67,6 +70,29 @@ int print_new_token() {
     return 0;
 }
 
+/// The table of a service that does not serve.
+int print_routes() {
+    char folder[] = "/tmp/hairbaked-routes-XXXXXX";
+    if (!::mkdtemp(folder)) throw Error(ErrorKind::internal, "there is no room in /tmp");
+    struct Remove {
+        std::filesystem::path path;
+        ~Remove() { std::filesystem::remove_all(path); }
+    } const remove{folder};
+    Settings settings;
+    settings.store = folder;
+    complete(settings);
+    Service service(settings);
+    Access access({});
+    Metrics metrics;
+    for (const Route& route : all_routes(service, access, metrics)) {
+        std::string types;
+        for (const std::string& type : route.types) types += " " + type;
+        std::printf("%s %s %s %llu%s\n", route.method.c_str(), route.pattern.c_str(), name_of(route.scope),
+                    static_cast<unsigned long long>(route.body_limit), types.c_str());
+    }
+    return 0;
+}
+
 sigset_t stop_signals() {
     sigset_t set;
     sigemptyset(&set);
@@ -99,7 +125,18 @@ void end_hard_after(std::chrono::seconds patience) {
     }).detach();
 }
 
+#ifdef HAIRBAKE_PLANTED_RACE
+/// What a ThreadSanitizer run must find: threads write here without a lock.
+void race() {
+    static volatile long long requests = 0;
+    requests = requests + 1;
+}
+#endif
+
 HttpReply answer(const Router& router, Metrics& metrics, HttpRequest& request) {
+#ifdef HAIRBAKE_PLANTED_RACE
+    if (std::getenv("HAIRBAKE_PLANTED_RACE")) race();
+#endif
     const auto start = std::chrono::steady_clock::now();
     HttpReply reply = router.answer(request);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -137,6 +174,7 @@ int main(int argc, char** argv) {
     try {
         const std::string first = argc > 1 ? argv[1] : "";
         if (argc == 3 && first == "token" && !std::strcmp(argv[2], "new")) return print_new_token();
+        if (argc == 2 && first == "routes") return print_routes();
         if (argc == 2 && first == "--version") return std::printf("hairbaked %s\n", HAIRBAKE_VERSION), 0;
         if (argc != 1 && !(argc == 3 && first == "--config")) {
             std::fputs(usage, stderr);

@@ -24,11 +24,6 @@ const std::string cookie_name = "hairbake_session";
     throw Denied(std::move(reply));
 }
 
-const char* name_of(Scope scope) {
-    constexpr std::array<const char*, 5> names{"open", "read", "upload", "bake", "admin"};
-    return names[static_cast<std::size_t>(scope)];
-}
-
 /// "[::1]:8080" -> "[::1]".
 std::string without_port(const std::string& host) {
     const std::size_t colon = host.rfind(':');
@@ -65,6 +60,11 @@ std::optional<std::string> cookie_of(const HttpRequest& request) {
 }
 
 }  // namespace
+
+const char* name_of(Scope scope) {
+    constexpr std::array<const char*, 5> names{"open", "read", "upload", "bake", "admin"};
+    return names[static_cast<std::size_t>(scope)];
+}
 
 std::optional<std::size_t> Access::find_token(const std::string& text) const {
     const std::string digest = Digest().add(text).hex();

@@ -14,6 +14,7 @@ namespace hairbake {
 
 /// What a route asks for. `open` routes serve anybody who reaches the daemon.
 enum class Scope { open, read, upload, bake, admin };
+const char* name_of(Scope scope);
 
 /// A refusal with 401 or 403.
 class Denied : public std::exception {

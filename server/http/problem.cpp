@@ -59,7 +59,7 @@ HttpReply problem_of(const Refusal& refusal) {
         case Refused::malformed:
             return problem(400, "malformed", refusal.what(), refusal.field());
         case Refused::unprocessable:
-            return problem(422, "unprocessable", refusal.what(), refusal.field());
+            return problem(422, "unprocessable", refusal.what(), refusal.field(), refusal.pointer());
         case Refused::not_found:
             return problem(404, "not-found", refusal.what(), refusal.field());
         case Refused::conflict:
@@ -77,10 +77,12 @@ HttpReply problem_of(const Refusal& refusal) {
 
 }  // namespace
 
-HttpReply problem(int status, const std::string& slug, const std::string& detail, const std::string& field) {
+HttpReply problem(int status, const std::string& slug, const std::string& detail, const std::string& field,
+                  const std::string& pointer) {
     Json body{
         {"type", "urn:hairbake:problem:" + slug}, {"title", title_of(status)}, {"status", status}, {"detail", detail}};
     if (!field.empty()) body["field"] = field;
+    if (!pointer.empty()) body["pointer"] = pointer;
     HttpReply reply;
     reply.status = status;
     reply.type = "application/problem+json";

@@ -7,8 +7,10 @@
 
 namespace hairbake {
 
-/// `slug` makes the stable type, urn:hairbake:problem:<slug>; `field` is the field at fault or empty.
-HttpReply problem(int status, const std::string& slug, const std::string& detail, const std::string& field = {});
+/// `slug` makes the stable type, urn:hairbake:problem:<slug>; `field` is the field at fault or empty,
+/// `pointer` the JSON pointer to it when it is one of the body.
+HttpReply problem(int status, const std::string& slug, const std::string& detail, const std::string& field = {},
+                  const std::string& pointer = {});
 
 /// The problem of a status code that the HTTP library answers with by itself.
 HttpReply problem_of_status(int status);

@@ -5,6 +5,7 @@
 #include <httplib.h>
 #include <spdlog/spdlog.h>
 #include <sys/stat.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -36,24 +37,19 @@ thread_local bool body_left = false;
 class BoundedPool : public httplib::TaskQueue {
 public:
     BoundedPool(int threads, int waiting) : waiting_(static_cast<std::size_t>(waiting)) {
-        for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { work(jobs_); });
+        for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { work(accepted_); });
         threads_.emplace_back([this] {
             refusing = true;
-            work(refusals_);
+            work(refused_);
         });
     }
 
     bool enqueue(std::function<void()> job) override {
-        {
-            const std::lock_guard lock(mutex_);
-            if (jobs_.size() < waiting_)
-                jobs_.push_back(std::move(job));
-            else if (refusals_.size() < most_refusals)
-                refusals_.push_back(std::move(job));
-            else
-                return false;  // the library closes the connection
-        }
-        changed_.notify_all();
+        const std::lock_guard lock(mutex_);
+        Line& line = accepted_.jobs.size() < waiting_ ? accepted_ : refused_;
+        if (&line == &refused_ && line.jobs.size() >= most_refusals) return false;  // the library closes the connection
+        line.jobs.push_back(std::move(job));
+        line.grown.notify_one();
         return true;
     }
 
@@ -62,18 +58,24 @@ public:
             const std::lock_guard lock(mutex_);
             ending_ = true;
         }
-        changed_.notify_all();
+        accepted_.grown.notify_all();
+        refused_.grown.notify_all();
         threads_.clear();  // joins
     }
 
 private:
-    void work(std::deque<std::function<void()>>& jobs) {
+    struct Line {
+        std::deque<std::function<void()>> jobs;
+        std::condition_variable grown;
+    };
+
+    void work(Line& line) {
         for (;;) {
             std::unique_lock lock(mutex_);
-            changed_.wait(lock, [&] { return ending_ || !jobs.empty(); });
-            if (jobs.empty()) return;
-            const std::function<void()> job = std::move(jobs.front());
-            jobs.pop_front();
+            line.grown.wait(lock, [&] { return ending_ || !line.jobs.empty(); });
+            if (line.jobs.empty()) return;
+            const std::function<void()> job = std::move(line.jobs.front());
+            line.jobs.pop_front();
             lock.unlock();
             job();
         }
@@ -81,9 +83,8 @@ private:
 
     const std::size_t waiting_;
     std::mutex mutex_;
-    std::condition_variable changed_;
     bool ending_ = false;
-    std::deque<std::function<void()>> jobs_, refusals_;
+    Line accepted_, refused_;
     std::vector<std::jthread> threads_;
 };
 
@@ -195,6 +196,22 @@ void fill(httplib::Response& to, const HttpReply& reply) {
         to.set_content(reply.body, reply.type);
 }
 
+/// A daemon that was killed leaves its socket behind. One that somebody listens on is not ours to take, nor is a file
+/// that is no socket.
+void remove_dead_socket(const std::string& path) {
+    struct stat facts {};
+    if (::lstat(path.c_str(), &facts) != 0) return;
+    if (!S_ISSOCK(facts.st_mode)) throw Error(ErrorKind::usage, path + " is there and is no socket");
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path.copy(address.sun_path, sizeof address.sun_path - 1);
+    const int probe = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    const bool lives = ::connect(probe, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+    ::close(probe);
+    if (lives) throw Error(ErrorKind::usage, "somebody listens on the socket " + path + " already");
+    ::unlink(path.c_str());
+}
+
 }  // namespace
 
 class Rim::Listener : public httplib::Server {
@@ -252,7 +269,7 @@ public:
 private:
     void bind(const RimSettings& settings) {
         if (!settings.socket.empty()) {
-            ::unlink(settings.socket.c_str());  // of a daemon that was killed; the store's lock tells of one that lives
+            remove_dead_socket(settings.socket);
             set_address_family(AF_UNIX);
             if (!bind_to_port(settings.socket, 80))
                 throw Error(ErrorKind::usage, "cannot listen on the socket " + settings.socket);

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "server/http/problem.h"
-#include "server/jobs/service.h"
+#include "server/store/refusal.h"
 
 namespace hairbake {
 namespace {
@@ -59,6 +59,31 @@ const Route* find(const std::vector<Route>& routes, HttpRequest& request, const 
     return nullptr;
 }
 
+/// A media type without its parameters.
+std::string type_of(const HttpRequest& request) {
+    const std::string type = request.header("Content-Type").value_or("");
+    return type.substr(0, type.find_first_of("; "));
+}
+
+/// What speaks against the body before a byte of it is read.
+std::optional<HttpReply> wrong_body(const HttpRequest& request, const Route& route) {
+    if (route.body_limit == 0) {
+        if (request.has_body) throw Refusal(Refused::too_large, "no body is taken here");
+        return std::nullopt;
+    }
+    if (!request.content_length && !request.has_body)
+        return problem(411, "length-required", "the body's length is missing: Content-Length, or chunks");
+    if (request.content_length.value_or(0) > route.body_limit)
+        throw Refusal(Refused::too_large, "the body is " + std::to_string(*request.content_length) +
+                                              " bytes long; allowed is up to " + std::to_string(route.body_limit));
+    const std::string type = type_of(request);
+    if (type.empty() || route.types.empty() || std::count(route.types.begin(), route.types.end(), type))
+        return std::nullopt;
+    std::string allowed;
+    for (const std::string& known : route.types) allowed += (allowed.empty() ? "" : " or ") + known;
+    return problem(415, "unsupported", "the body is " + type.substr(0, 80) + "; allowed is " + allowed, "Content-Type");
+}
+
 }  // namespace
 
 HttpReply Router::answer_or_throw(HttpRequest& request) const {
@@ -76,10 +101,7 @@ HttpReply Router::answer_or_throw(HttpRequest& request) const {
         return reply.with("Allow", allowed);
     }
     access_.check(request, route->scope);
-    if (request.has_body && route->body_limit == 0) throw Refusal(Refused::too_large, "no body is taken here");
-    if (request.content_length.value_or(0) > route->body_limit)
-        throw Refusal(Refused::too_large, "the body is " + std::to_string(*request.content_length) +
-                                              " bytes long; allowed is up to " + std::to_string(route->body_limit));
+    if (std::optional<HttpReply> wrong = wrong_body(request, *route)) return *wrong;
     // Whatever a handler reads is counted here, so that none can forget to.
     const auto read = request.read_body;
     request.read_body = [read,

@@ -17,6 +17,8 @@ struct Route {
     Scope scope = Scope::admin;
     std::uint64_t body_limit = 0;  ///< bytes; 0: no body is taken
     std::function<HttpReply(HttpRequest&)> handle;
+    /// Media types of the body; a body without Content-Type passes for any. None: the handler looks for itself.
+    std::vector<std::string> types = {};
 };
 
 /// Thread-safe.
@@ -24,7 +26,7 @@ class Router {
 public:
     Router(std::vector<Route> routes, Access& access) : routes_(std::move(routes)), access_(access) {}
 
-    /// Access, body limit, handler; 404, 405 with Allow, OPTIONS; every failure as problem+json.
+    /// Access, the body's framing, limit and type, handler; 404, 405 with Allow, OPTIONS; every failure as problem+json.
     HttpReply answer(HttpRequest& request) const;
 
     const std::vector<Route>& routes() const { return routes_; }

@@ -1,5 +1,6 @@
 #include <set>
 
+#include "server/http/body_schema.h"
 #include "server/http/replies.h"
 #include "server/http/routes.h"
 
@@ -16,7 +17,7 @@ std::string text_in_query(const HttpRequest& request, const std::string& name) {
 }
 
 HttpReply post_bake(Service& service, HttpRequest& request) {
-    const Service::Answer answer = service.submit(read_text(request));
+    const Service::Answer answer = service.submit(read_json(request, "BakeRequest"));
     return json_reply(answer.state == "done" ? 200 : 202, answer.json).with("Location", "/v1/bakes/" + answer.id);
 }
 
@@ -46,7 +47,7 @@ HttpReply get_file(Service& service, HttpRequest& request) {
 HttpReply post_rebake(Service& service, HttpRequest& request) {
     const auto dry = request.query.find("dry_run");
     const bool dry_run = dry != request.query.end() && dry->second != "0";
-    const std::string answer = service.batches().rebake(read_text(request), dry_run);
+    const std::string answer = service.batches().rebake(read_json(request, "RebakeRequest"), dry_run);
     if (dry_run) return json_reply(200, answer);
     const std::size_t id = answer.find("\"id\":\"") + 6;
     return json_reply(202, answer).with("Location", "/v1/batches/" + answer.substr(id, answer.find('"', id) - id));
@@ -59,7 +60,7 @@ std::vector<Route> bake_routes(Service& service) {
         return [&service, handle](HttpRequest& request) { return handle(service, request); };
     };
     return {
-        {"POST", "/v1/bakes", Scope::bake, request_limit, bound(post_bake)},
+        {"POST", "/v1/bakes", Scope::bake, request_limit, bound(post_bake), {"application/json"}},
         {"GET", "/v1/bakes", Scope::read, 0, bound(list_bakes)},
         {"GET", "/v1/bakes/{id}", Scope::read, 0,
          [&service](HttpRequest& r) { return cached_json(r, service.bakes().get(r.parameters.at("id"))); }},
@@ -69,7 +70,7 @@ std::vector<Route> bake_routes(Service& service) {
              return json_reply(200, service.bakes().get(r.parameters.at("id")));
          }},
         {"GET", "/v1/bakes/{id}/files/{name}", Scope::read, 0, bound(get_file)},
-        {"POST", "/v1/rebakes", Scope::bake, rebake_limit, bound(post_rebake)},
+        {"POST", "/v1/rebakes", Scope::bake, rebake_limit, bound(post_rebake), {"application/json"}},
         {"GET", "/v1/batches/{id}", Scope::read, 0,
          [&service](HttpRequest& r) { return cached_json(r, service.batches().get(r.parameters.at("id"))); }},
     };

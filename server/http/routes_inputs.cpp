@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "server/http/body_schema.h"
 #include "server/http/problem.h"
 #include "server/http/replies.h"
 #include "server/http/routes.h"
@@ -40,13 +41,8 @@ HttpReply get_blob(Service& service, HttpRequest& request) {
 
 /// The digest that the JSON body names.
 std::string digest_in(const HttpRequest& request) {
-    const Json body = Json::parse(read_text(request), nullptr, false);
-    if (!body.is_object() || body.size() != 1 || !body.contains("sha256") || !body["sha256"].is_string())
-        throw Refusal(Refused::unprocessable, "the body is not {\"sha256\": \"...\"} of a stored blob", "sha256");
-    std::string digest = body["sha256"].get<std::string>();
-    if (digest.starts_with("sha256:")) digest.erase(0, 7);
-    check_digest(digest);
-    return digest;
+    const std::string digest = Json::parse(read_json(request, "InputRequest"))["sha256"].get<std::string>();
+    return digest.starts_with("sha256:") ? digest.substr(7) : digest;
 }
 
 /// By digest when the body is JSON, else the body is the file itself.
@@ -58,10 +54,10 @@ HttpReply add_input(Service& service, HttpRequest& request, const std::string& k
             throw Refusal(Refused::too_large,
                           "a JSON body has a length, of at most " + std::to_string(json_limit) + " bytes");
         digest = digest_in(request);
-    } else if (type == "application/octet-stream") {
+    } else if (type.starts_with("application/octet-stream")) {
         digest = receive_blob(service, request, "").first;
     } else {
-        return problem(415, "unsupported", "allowed is application/json with a digest, or application/octet-stream",
+        return problem(415, "unsupported", "Content-Type is missing; allowed is application/json with a digest, or application/octet-stream",
                        "Content-Type");
     }
     const Catalog::Added added = service.catalog().add(kind, digest);
@@ -75,11 +71,7 @@ HttpReply get_thumbnail(Service& service, HttpRequest& request, const std::strin
 }
 
 HttpReply put_name(Service& service, HttpRequest& request) {
-    const Json body = Json::parse(read_text(request), nullptr, false);
-    const bool good = body.is_object() && body.contains("sha256") && body["sha256"].is_string() &&
-                      (!body.contains("note") || body["note"].is_string()) && body.size() == 1u + body.contains("note");
-    if (!good)
-        throw Refusal(Refused::unprocessable, "the body is not {\"sha256\": \"...\", \"note\": \"...\"}", "sha256");
+    const Json body = Json::parse(read_json(request, "NameRequest"));
     std::string answer;
     service.database().write([&](Sql& sql) {
         answer = Names::put(sql, request.parameters.at("kind"), request.parameters.at("path"),
@@ -110,7 +102,8 @@ HttpReply list_names(Service& service, HttpRequest& request) {
 void add_catalog(std::vector<Route>& routes, Service& service, const std::string& kind) {
     const std::string base = "/v1/" + kind + "s", one = base + "/{sha256}";
     routes.push_back({"POST", base, Scope::upload, service.settings().blob_bytes,
-                      [&service, kind](HttpRequest& r) { return add_input(service, r, kind); }});
+                      [&service, kind](HttpRequest& r) { return add_input(service, r, kind); },
+                      {"application/json", "application/octet-stream"}});
     routes.push_back({"GET", base, Scope::read, 0, [&service, kind](HttpRequest& r) {
                           const auto limit = static_cast<int>(number_in_query(r, "limit", 1, 200, 50));
                           const std::int64_t cursor = number_in_query(r, "cursor", 0, INT64_MAX, INT64_MAX);
@@ -138,7 +131,7 @@ std::vector<Route> input_routes(Service& service) {
     std::vector<Route> routes{
         {"PUT", "/v1/blobs/{sha256}", Scope::upload, service.settings().blob_bytes, bound(put_blob)},
         {"GET", "/v1/blobs/{sha256}", Scope::read, 0, bound(get_blob)},
-        {"PUT", "/v1/names/{kind}/{path...}", Scope::upload, json_limit, bound(put_name)},
+        {"PUT", "/v1/names/{kind}/{path...}", Scope::upload, json_limit, bound(put_name), {"application/json"}},
         {"GET", "/v1/names/{kind}", Scope::read, 0, bound(list_names)},
         {"GET", "/v1/names/{kind}/{path...}", Scope::read, 0, bound(get_name)},
     };

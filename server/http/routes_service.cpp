@@ -2,8 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/request_keys.h"
-#include "core/request_presets.h"
-#include "server/http/embedded.h"
+#include "server/http/openapi.h"
 #include "server/http/problem.h"
 #include "server/http/replies.h"
 #include "server/http/routes.h"
@@ -21,20 +20,6 @@ HttpReply version() {
                   {"api", "v1"},
                   {"algorithms", {{"transmittance", transmittance_algorithm}, {"irradiance", irradiance_algorithm}}}}
                  .dump());
-}
-
-/// config/openapi.json with the request's schema in it.
-std::string openapi() {
-    Json document = Json::parse(openapi_document());
-    Json schema = Json::parse(request_schema());
-    schema.erase("$schema");
-    schema["properties"]["priority"] = {{"description", "Bakes of a higher priority are started first."},
-                                        {"type", "integer"},
-                                        {"minimum", -10},
-                                        {"maximum", 10},
-                                        {"default", 0}};
-    document["components"]["schemas"]["BakeRequest"] = std::move(schema);
-    return document.dump(1);
 }
 
 HttpReply ready(Service& service) {

@@ -91,8 +91,6 @@ HttpReply look(Service& service, HttpRequest& request) {
 }
 
 HttpReply append(Service& service, HttpRequest& request) {
-    if (request.header("Content-Type").value_or("") != "application/offset+octet-stream")
-        return problem(415, "unsupported", "allowed is application/offset+octet-stream", "Content-Type");
     const Uploads::Appended appended = service.uploads().append(
         request.parameters.at("id"), length_header(request, "Upload-Offset"), request.read_body);
     HttpReply reply = tus_reply(204).with("Upload-Offset", std::to_string(appended.offset));
@@ -119,7 +117,8 @@ std::vector<Route> upload_routes(Service& service) {
         {"OPTIONS", base, Scope::open, 0, [&service](HttpRequest&) { return options(service); }},
         {"POST", base, Scope::upload, 0, tus(service, create)},
         {"HEAD", one, Scope::upload, 0, tus(service, look)},
-        {"PATCH", one, Scope::upload, service.settings().blob_bytes, tus(service, append)},
+        {"PATCH", one, Scope::upload, service.settings().blob_bytes, tus(service, append),
+         {"application/offset+octet-stream"}},
         {"DELETE", one, Scope::upload, 0,
          tus(service,
              [](Service& s, HttpRequest& request) {

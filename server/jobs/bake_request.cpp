@@ -1,5 +1,6 @@
 #include "server/jobs/bake_request.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
@@ -12,19 +13,20 @@ namespace hairbake {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr int deepest = 16;
 
-/// Parses without recursing deeper than a request can be.
+/// What the schema took, or a stored request; malformed only by a mistake of ours.
 Json parse(const std::string& body) {
-    const auto shallow = [](int depth, Json::parse_event_t, Json&) {
-        if (depth > deepest) throw Refusal(Refused::malformed, "the body is nested too deeply");
-        return true;
-    };
     try {
-        return Json::parse(body, shallow);
+        return Json::parse(body);
     } catch (const Json::exception& error) {
         throw Refusal(Refused::malformed, std::string("the body is not JSON: ") + error.what());
     }
+}
+
+/// "transmittance.voxels" -> "/transmittance/voxels".
+std::string pointer_to(std::string field) {
+    std::replace(field.begin(), field.end(), '.', '/');
+    return field.empty() ? field : "/" + field;
 }
 
 struct Resolved {
@@ -42,11 +44,13 @@ Resolved resolve(Sql& sql, const std::string& value, const std::string& kind, co
     } else {
         throw Refusal(Refused::unprocessable,
                       field + " is neither of what is allowed: sha256: and 64 hexadecimal digits, or name: and a name",
-                      field);
+                      field)
+            .at("/" + field);
     }
     if (sql.rows("SELECT 1 FROM blobs WHERE sha256 = ?", {resolved.digest}).empty())
         throw Refusal(Refused::unprocessable,
-                      field + " asks for sha256:" + resolved.digest + ", which is not stored; send it first", field);
+                      field + " asks for sha256:" + resolved.digest + ", which is not stored; send it first", field)
+            .at("/" + field);
     return resolved;
 }
 
@@ -81,22 +85,29 @@ int take_priority(Json& body) {
 
 }  // namespace
 
-BakePlan read_bake_request(Sql& sql, const std::string& text) {
+AskedBake read_bake_request(Sql& sql, const std::string& text) {
     Json body = parse(text);
     if (!body.is_object()) throw Refusal(Refused::unprocessable, "the body is not a JSON object");
-    const int priority = take_priority(body);
-    BakeRequest request;
+    AskedBake asked;
+    const bool as_it_is = !body.contains("priority");
+    asked.priority = take_priority(body);
     Json names = Json::object();
     try {
-        merge_json(request, body.dump(-1, ' ', false, Json::error_handler_t::replace), "the request");
-        validate(request);
+        merge_json(asked.request, as_it_is ? text : body.dump(-1, ' ', false, Json::error_handler_t::replace),
+                   "the request");
+        validate(asked.request);
     } catch (const Error& error) {
-        throw Refusal(Refused::unprocessable, error.what(), error.field());
+        throw Refusal(Refused::unprocessable, error.what(), error.field()).at(pointer_to(error.field()));
     }
-    resolve_files(sql, request, names);
-    BakePlan plan = plan_bake(request);
-    plan.names = names.dump();
-    plan.priority = priority;
+    resolve_files(sql, asked.request, names);
+    asked.names = names.dump();
+    return asked;
+}
+
+BakePlan plan_bake(const AskedBake& asked) {
+    BakePlan plan = plan_bake(asked.request);
+    plan.names = asked.names;
+    plan.priority = asked.priority;
     return plan;
 }
 

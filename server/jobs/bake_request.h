@@ -8,10 +8,18 @@
 
 namespace hairbake {
 
+struct AskedBake {
+    BakeRequest request;  ///< files are "sha256:..."
+    std::string names;    ///< as in BakePlan
+    int priority = 0;
+};
+
 /// Reads the request's JSON (config/request.schema.json, plus "priority" from -10 to 10): defaults are filled in, names
 /// become digests, digests must be stored. A path is refused. In the caller's transaction. Throws Refusal naming the
 /// field.
-BakePlan read_bake_request(Sql& sql, const std::string& body);
+AskedBake read_bake_request(Sql& sql, const std::string& body);
+
+BakePlan plan_bake(const AskedBake& asked);
 
 /// The digest that "sha256:..." or "name:..." stands for; `kind` is that of names. Throws Refusal naming `field`.
 std::string stored_digest(Sql& sql, const std::string& value, const std::string& kind, const std::string& field);

@@ -90,7 +90,7 @@ BakePlan plan_again(Sql& sql, const SqlRow& old, const Json& body) {
         request["irradiance"].merge_patch(body["irradiance"]);
     }
     if (body.contains("priority")) request["priority"] = body["priority"];
-    return read_bake_request(sql, request.dump());
+    return plan_bake(read_bake_request(sql, request.dump()));
 }
 
 bool stored(Sql& sql, const std::string& stage) {

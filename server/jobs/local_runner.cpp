@@ -108,19 +108,27 @@ public:
 private:
     void line(const Json& words) {
         if (!words.is_object()) return;
-        if (words.contains("phase") && words["phase"].is_string()) {
-            task_.progress(words["phase"].get<std::string>(), words.value("fraction", 0.0));
+        if (words.contains("phase")) {
+            const auto fraction = words.find("fraction");
+            task_.progress(text(words, "phase"),
+                           fraction != words.end() && fraction->is_number() ? fraction->get<double>() : 0);
         } else if (words.contains("done")) {
             has_last_word = true;
             outcome.end = Outcome::End::done;
             outcome.facts = words["done"].dump();
         } else if (words.contains("error") && words["error"].is_object()) {
             has_last_word = true;
-            outcome.kind = words["error"].value("kind", "internal");
+            outcome.kind = text(words["error"], "kind");
             outcome.end = outcome.kind == "cancelled" ? Outcome::End::cancelled : Outcome::End::failed;
-            outcome.message = words["error"].value("message", "");
-            outcome.field = words["error"].value("field", "");
+            outcome.message = text(words["error"], "message");
+            outcome.field = text(words["error"], "field");
         }
+    }
+
+    /// A worker is not believed to say what it should.
+    static std::string text(const Json& object, const char* name) {
+        const auto found = object.find(name);
+        return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
     }
 
     const Task& task_;
@@ -143,9 +151,9 @@ public:
             if (!cancel && !hung) return;
             asked = true;
             asked_at_ = time;
-            ::kill(child_, SIGTERM);
+            ::kill(-child_, SIGTERM);  // its group: what it started, too
         } else if (time - asked_at_ > std::chrono::seconds(2)) {
-            ::kill(child_, SIGKILL);
+            ::kill(-child_, SIGKILL);
         }
     }
 

@@ -84,7 +84,8 @@ NamedDigest Names::resolve(Sql& sql, const std::string& kind, const std::string&
     if (rows.empty())
         throw Refusal(
             Refused::unprocessable,
-            field + " asks for name:" + name.substr(0, longest_path) + ", which is no name of the kind " + kind, field);
+            field + " asks for name:" + name.substr(0, longest_path) + ", which is no name of the kind " + kind, field)
+            .at("/" + field);
     return {path, rows[0].text(1), rows[0].integer(0)};
 }
 

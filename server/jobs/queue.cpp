@@ -91,10 +91,7 @@ void Queue::add_stage(Sql& sql, const StagePlan& stage, int priority) {
 Submitted Queue::add_bake(Sql& sql, const BakePlan& plan) {
     const auto rows = sql.rows("SELECT state FROM bakes WHERE id = ?", {plan.id});
     const std::string state = rows.empty() ? "" : rows[0].text(0);
-    if (state == "done") {
-        for (const StagePlan* stage : plan.stages()) touch_stage(sql, stage->key);
-        return {plan.id, state, true};
-    }
+    if (state == "done") return {plan.id, state, note_done(sql, plan.id)};
     for (const StagePlan* stage : plan.stages()) add_stage(sql, *stage, plan.priority);
     if (rows.empty())
         sql.run(
@@ -114,9 +111,11 @@ Submitted Queue::add_bake(Sql& sql, const BakePlan& plan) {
     return {plan.id, after, false};
 }
 
-bool Queue::note_done(Sql& sql, const BakePlan& plan) {
-    if (sql.rows("SELECT 1 FROM bakes WHERE id = ? AND state = 'done'", {plan.id}).empty()) return false;
-    for (const StagePlan* stage : plan.stages()) touch_stage(sql, stage->key);
+bool Queue::note_done(Sql& sql, const std::string& bake) {
+    const auto rows = sql.rows("SELECT transmittance, irradiance FROM bakes WHERE id = ? AND state = 'done'", {bake});
+    if (rows.empty()) return false;
+    for (const std::size_t column : {0, 1})
+        if (!rows[0].null(column)) touch_stage(sql, rows[0].text(column));
     return true;
 }
 

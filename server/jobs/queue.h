@@ -52,7 +52,7 @@ public:
     void recover(const std::vector<std::string>& lost_blobs);
 
     /// Whether the bake is done; then its stages count as used just now.
-    bool note_done(Sql& sql, const BakePlan& plan);
+    bool note_done(Sql& sql, const std::string& bake);
 
     /// Takes requests in one transaction; `batch`, when not empty, is made with them in it. Inputs were checked under
     /// database.lock(), which the caller still holds.

@@ -10,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "server/jobs/bake_request.h"
+#include "server/store/pruning.h"
 
 namespace hairbake {
 namespace {
@@ -41,6 +42,7 @@ Service::Service(const Settings& settings)
     if (!lost.empty()) spdlog::warn("{} blobs were lost; what needs them is baked again", lost.size());
     uploads_.recover();
     queue_.recover(lost);
+    prune(database_, now() - settings_.keep_failed_s);
     slots_ = std::make_unique<Slots>(queue_, runner_, database_, store_, settings_.budget_bytes, settings_.workers,
                                      settings_.worker_threads);
     caretaker_ = std::jthread([this] { look_after(); });
@@ -62,12 +64,13 @@ void Service::stop() {
     stopped_.notify_all();
 }
 
-/// Once a minute: uses are written down, old uploads go, the budget is kept.
+/// Once a minute: uses are written down, old uploads and ends go, the budget is kept.
 void Service::look_after() {
     std::unique_lock lock(mutex_);
     while (!stopped_.wait_for(lock, std::chrono::seconds(60), [this] { return queue_.stopping(); })) try {
             store_.flush_uses();
             uploads_.expire();
+            prune(database_, now() - settings_.keep_failed_s);
             evict(database_, store_, settings_.budget_bytes);
         } catch (const std::exception& error) {
             spdlog::error("caretaker: {}", error.what());
@@ -103,8 +106,8 @@ OpenBlob Service::open_blob(const std::string& digest) try {
 std::optional<Service::Answer> Service::answer_if_done(const std::string& body) {
     std::optional<Answer> answer;
     database_.read([&](Sql& sql) {
-        const BakePlan plan = read_bake_request(sql, body);
-        if (queue_.note_done(sql, plan)) answer = {plan.id, "done", bakes_.get(plan.id)};
+        const std::string id = bake_id_of(read_bake_request(sql, body).request);
+        if (queue_.note_done(sql, id)) answer = {id, "done", bakes_.get(id)};
     });
     return answer;
 }
@@ -113,7 +116,7 @@ Service::Answer Service::submit(const std::string& body) {
     if (std::optional<Answer> known = answer_if_done(body)) return *known;
     const auto held = database_.lock();  // what was found stored stays stored until it is queued
     BakePlan plan;
-    database_.read([&](Sql& sql) { plan = read_bake_request(sql, body); });
+    database_.read([&](Sql& sql) { plan = plan_bake(read_bake_request(sql, body)); });
     const Submitted submitted = queue_.submit({plan}).at(0);
     return {submitted.id, submitted.state, bakes_.get(submitted.id)};
 }

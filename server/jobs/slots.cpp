@@ -163,7 +163,9 @@ void Slots::remove_spoiled_inputs(const std::vector<std::string>& digests) {
 void Slots::store_result(const ClaimedStage& stage, const fs::path& folder) {
     std::ifstream stream(folder / "manifest.json", std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    const Json manifest = Json::parse(text);
+    const Json manifest = Json::parse(text, nullptr, false);
+    if (!manifest.is_object())
+        throw Error(ErrorKind::internal, "the worker said that it was done, and its manifest is missing or no JSON");
     if (manifest.at("stages").at(stage.kind).at("key") != stage.core_key) {
         remove_spoiled_inputs(inputs_of(stage));
         throw Error(ErrorKind::internal, "the worker made another key than the daemon: they are not of one version");

@@ -13,6 +13,10 @@ std::string digest_in(const std::optional<std::string>& file) {
     return file ? file->substr(std::string("sha256:").size()) : std::string();
 }
 
+TransmittanceInputs transmittance_inputs(const BakeRequest& request) {
+    return {digest_in(request.hair), digest_in(request.occluder), digest_in(request.receiver)};
+}
+
 /// The formats in which this stage writes files. A format is left out only where the stage surely has none of it.
 std::vector<std::string> formats_of(const BakeRequest& request, std::initializer_list<const char*> never) {
     std::vector<std::string> formats;
@@ -38,7 +42,7 @@ StagePlan transmittance_plan(const BakeRequest& request) {
     alone.strand = request.strand;
     alone.transmittance = request.transmittance;
     alone.outputs = formats_of(request, {"exr", "ktx2", "dds"});
-    const TransmittanceInputs inputs{digest_in(request.hair), digest_in(request.occluder), digest_in(request.receiver)};
+    const TransmittanceInputs inputs = transmittance_inputs(request);
     StagePlan stage{"transmittance", {}, transmittance_key(inputs, request), {}, {}};
     for (const std::string& digest : {inputs.hair, inputs.occluder, inputs.receiver})
         if (!digest.empty() && std::find(stage.inputs.begin(), stage.inputs.end(), digest) == stage.inputs.end())
@@ -66,6 +70,11 @@ std::vector<const StagePlan*> BakePlan::stages() const {
     if (transmittance) list.push_back(&*transmittance);
     if (irradiance) list.push_back(&*irradiance);
     return list;
+}
+
+std::string bake_id_of(const BakeRequest& request) {
+    return bake_id(request.hair ? transmittance_key(transmittance_inputs(request), request) : "",
+                   request.environment ? irradiance_key(digest_in(request.environment), request) : "", request);
 }
 
 BakePlan plan_bake(const BakeRequest& request) {

@@ -31,6 +31,7 @@ struct BakePlan {
 };
 
 /// `request` is valid and its files are "sha256:<digest>".
+std::string bake_id_of(const BakeRequest& request);
 BakePlan plan_bake(const BakeRequest& request);
 
 }  // namespace hairbake

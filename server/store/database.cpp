@@ -173,8 +173,14 @@ void Database::read(const std::function<void(Sql&)>& body) {
         ~Reading() { now = false; }
     } const reading{in_read_};
     try {
-        SQLite::Transaction transaction(reader_->database);  // its end gives the state free; there is nothing to commit
-        body(*reader_);
+        reader_->run("BEGIN", {});
+        try {
+            body(*reader_);
+        } catch (...) {
+            reader_->run("ROLLBACK", {});
+            throw;
+        }
+        reader_->run("ROLLBACK", {});  // there is nothing to commit
     } catch (const SQLite::Exception& error) {
         fail(error);
     }

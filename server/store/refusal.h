@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace hairbake {
 
@@ -25,10 +26,16 @@ public:
 
     Refused why() const { return why_; }
     const std::string& field() const { return field_; }
+    /// JSON pointer to the field in the request's body; empty when it is not there.
+    const std::string& pointer() const { return pointer_; }
+    Refusal& at(std::string pointer) {
+        pointer_ = std::move(pointer);
+        return *this;
+    }
 
 private:
     Refused why_;
-    std::string field_;
+    std::string field_, pointer_;
 };
 
 }  // namespace hairbake

@@ -49,11 +49,14 @@ class Reply:
 class Daemon:
     """`with Daemon() as d:`; the store outlives restarts within the block."""
 
-    def __init__(self, config="", workers=1, max_crashes=50, tokens=""):
+    def __init__(self, config="", workers=1, max_crashes=50, tokens="", listen="port = 0", limits="", before=()):
+        """`config`, `listen` and `limits` are lines of [store], [listen] and [workers]; `before` are the words of a program
+        that starts the daemon. With a socket in `listen`, `port` is None and `address` is the socket's path."""
         self.folder = tempfile.TemporaryDirectory(prefix="hairbake-server-")
         self.path = Path(self.folder.name)
         self.config, self.workers, self.max_crashes, self.tokens = config, workers, max_crashes, tokens
-        self.process, self.port = None, None
+        self.listen, self.limits, self.before = listen, limits, list(before)
+        self.process, self.port, self.address = None, None, None
 
     def __enter__(self):
         self.start()
@@ -66,21 +69,27 @@ class Daemon:
 
     def write_config(self):
         (self.path / "hairbake.toml").write_text(
-            f'[listen]\nport = 0\n[store]\nfolder = "store"\n{self.config}\n'
-            f"[workers]\ncount = {self.workers}\nthreads = 1\nmax_crashes = {self.max_crashes}\n{self.tokens}\n")
+            f'[listen]\n{self.listen}\n[store]\nfolder = "store"\n{self.config}\n'
+            f"[workers]\ncount = {self.workers}\nthreads = 1\nmax_crashes = {self.max_crashes}\n"
+            f"{self.limits}\n{self.tokens}\n")
 
     def spawn(self):
         self.write_config()
         with open(self.path / "log", "ab") as log:
-            return subprocess.Popen([PROGRAMS / "hairbaked", "--config", self.path / "hairbake.toml"], stdout=subprocess.PIPE,
-                                    stderr=log, stdin=subprocess.DEVNULL)
+            return subprocess.Popen([*self.before, PROGRAMS / "hairbaked", "--config", self.path / "hairbake.toml"],
+                                    stdout=subprocess.PIPE, stderr=log, stdin=subprocess.DEVNULL)
 
     def start(self):
         self.process = self.spawn()
         line = self.process.stdout.readline().decode()
         if "listens on" not in line:
             raise AssertionError(f"the daemon did not start: {(self.path / 'log').read_text()}")
-        self.port = int(line.rsplit(":", 1)[1])
+        place = line.split("listens on ")[1].strip()
+        if place.startswith("unix:"):
+            self.address = place[5:]
+        else:
+            self.port = int(place.rsplit(":", 1)[1])
+            self.address = ("127.0.0.1", self.port)
 
     def kill(self):
         self.process.kill()
@@ -117,7 +126,8 @@ class Daemon:
         return children[0] if running else None
 
     def ask(self, method, path, body=None, headers=None):
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=PATIENCE)
+        connection = http.client.HTTPConnection("localhost")
+        connection.sock = self.connect()
         if isinstance(body, (dict, list)):
             body = json.dumps(body)
             headers = {"Content-Type": "application/json", **(headers or {})}
@@ -128,9 +138,15 @@ class Daemon:
         finally:
             connection.close()
 
+    def connect(self, timeout=PATIENCE):
+        s = socket.socket(socket.AF_INET if self.port else socket.AF_UNIX)
+        s.settimeout(timeout)
+        s.connect(self.address)
+        return s
+
     def raw(self, data, then=b"", pause=0):
         """Sends bytes as they are; what came back until the connection closed."""
-        with socket.create_connection(("127.0.0.1", self.port), timeout=15) as s:
+        with self.connect(timeout=15) as s:
             try:
                 s.sendall(data)
                 if then:

@@ -1,11 +1,13 @@
 """Bakes, batches, names and inputs through the real daemon."""
 import json
+import sqlite3
 import subprocess
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
-from harness import PROGRAMS, Daemon, hair_bytes, hdr_bytes, quick_request, sha256, slow_request
+from harness import PATIENCE, PROGRAMS, Daemon, hair_bytes, hdr_bytes, quick_request, sha256, slow_request
 
 
 class Bakes(unittest.TestCase):
@@ -86,10 +88,19 @@ class Bakes(unittest.TestCase):
                                ({"hair": "sha256:" + "0" * 64}, "hair"), ({"hair": "name:none"}, "hair"),
                                ({"hair": hair, "colour": 1}, "colour"), ({}, "hair"),
                                ({"hair": hair, "transmittance": {"voxels": 7}}, "transmittance.voxels"),
-                               ({"hair": hair, "outputs": ["png"]}, "outputs"), ({"hair": hair, "priority": 11}, "priority")):
+                               ({"hair": hair, "outputs": ["png"]}, "outputs[0]"), ({"hair": 12}, "hair"),
+                               ({"hair": hair, "transmittance": {"seed": "1"}}, "transmittance.seed"),
+                               ({"environment": [hair] * 6}, "environment"), ({"hair": hair, "strand": {"opacity": 2}}, "strand.opacity"),
+                               ({"environment": hair, "irradiance": {"lights": [{"direction": [0, 1], "irradiance": [1, 1, 1]}]}}, "irradiance.lights[0].direction"),
+                               ({"environment": hair, "irradiance": {"lights": [{"direction": [0, 1, 0]}]}},
+                                "irradiance.lights[0].irradiance"), ({"hair": hair, "priority": 11}, "priority")):
             reply = self.daemon.ask("POST", "/v1/bakes", request)
             self.assertEqual((reply.status, reply.json["field"]), (422, field), reply.body)
+            self.assertEqual(reply.json["pointer"], "/" + field.replace(".", "/").replace("[", "/").replace("]", ""))
             self.assertEqual(reply.headers["Content-Type"], "application/problem+json")
+        detail = self.daemon.ask("POST", "/v1/bakes", {"hair": hair, "transmittance": {"voxels": 7}}).json["detail"]
+        self.assertIn("transmittance.voxels is 7; allowed is", detail)
+        self.assertIn('"minimum":32', detail)
         self.assertEqual(self.daemon.ask("POST", "/v1/bakes", "{").status, 400)
         self.assertEqual(self.daemon.ask("POST", "/v1/bakes", "[" * 100000).status, 400)
 
@@ -164,6 +175,38 @@ class Rebakes(unittest.TestCase):
             self.assertAlmostEqual(ratio[0], 2.0, delta=1e-5)  # float32 maps
             self.assertAlmostEqual(ratio[1], 1.0, delta=1e-5)
             self.assertEqual(d.ask("POST", "/v1/rebakes", {"environment": f"sha256:{new}"}).status, 422)
+
+
+class ManyRebakes(unittest.TestCase):
+    GROOMS = 1000  # how long they take is measured by tests/bench/bench_service.py
+
+    def test_the_maps_are_baked_once_for_a_thousand_grooms(self):
+        with Daemon(workers=2) as d:
+            old, new = d.put(hdr_bytes(red=100)), d.put(hdr_bytes(red=200))
+            for seed in range(self.GROOMS):
+                reply = d.ask("POST", "/v1/bakes", quick_request(d.put(hair_bytes(strands=4, points=4, seed=seed)), old))
+                self.assertIn(reply.status, (200, 202), reply.body)
+                last = reply.json["id"]
+            self.wait_until(d, lambda: not d.ask("GET", "/v1/bakes?state=queued&limit=1").json["bakes"])
+            self.assertEqual(d.wait(last)["state"], "done")
+            body = {"environment": f"sha256:{new}", "replaces": f"sha256:{old}"}
+            dry = d.ask("POST", "/v1/rebakes?dry_run=1", body).json
+            self.assertEqual(dry, {"bakes": self.GROOMS, "reused_stages": {"transmittance": self.GROOMS, "irradiance": 0},
+                                   "computed_stages": {"transmittance": 0, "irradiance": 1}})
+            reply = d.ask("POST", "/v1/rebakes", body)
+            batch = reply.headers["Location"]
+            self.wait_until(d, lambda: d.ask("GET", batch).json["states"]["done"] == self.GROOMS)
+            d.stop()
+            with sqlite3.connect(d.path / "store/hairbake.db") as database:
+                ran = dict(database.execute("SELECT kind, sum(attempts) FROM stages GROUP BY kind"))
+                self.assertEqual(ran, {"transmittance": self.GROOMS, "irradiance": 2})  # the old maps and the new
+                self.assertEqual(database.execute("SELECT count(*) FROM bakes WHERE state = 'done'").fetchone()[0], 2 * self.GROOMS)
+
+    def wait_until(self, d, holds):
+        end = time.monotonic() + 10 * PATIENCE
+        while not holds():
+            self.assertLess(time.monotonic(), end, "the bakes do not end")
+            time.sleep(0.2)
 
 
 class Names(unittest.TestCase):

@@ -2,9 +2,13 @@
 import json
 import re
 import socket
+import subprocess
 import unittest
 
-from harness import Daemon, base64_text, hair_bytes, quick_request, sha256
+from harness import PROGRAMS, Daemon, base64_text, hair_bytes, quick_request, sha256
+
+
+PAGE = set()  # rows of the table that serve files to a browser: no part of the API
 
 
 def status_of(answer):
@@ -22,7 +26,29 @@ class Rim(unittest.TestCase):
     def tearDownClass(cls):
         cls.daemon.__exit__()
 
-    def test_every_route_of_the_document_has_rule_limit_and_problem(self):
+    def test_the_route_table_and_the_document_say_the_same(self):
+        document = self.daemon.ask("GET", "/openapi.json").json
+        table = subprocess.run([PROGRAMS / "hairbaked", "routes"], check=True, capture_output=True, text=True).stdout
+        described, found = {}, {}
+        for line in table.splitlines():
+            method, pattern, scope, limit, *types = line.split()
+            if f"{method} {pattern}" not in PAGE:
+                found[method, pattern.replace("...}", "}")] = scope, int(limit) > 0, set(types)
+        for pattern, operations in document["paths"].items():
+            for method, operation in operations.items():
+                scope = re.search(r"Scope: ([a-z]+)\.", operation["description"]).group(1)
+                self.assertEqual(bool(operation["security"]), scope != "open", (method, pattern))
+                for status, answer in operation["responses"].items():
+                    if status >= "400":
+                        self.assertIn("application/problem+json", answer["content"], (method, pattern, status))
+                content = operation.get("requestBody", {}).get("content", {})
+                types = set() if pattern == "/v1/blobs/{sha256}" else set(content)  # a file may be sent as any type
+                described[method.upper(), pattern] = scope, bool(content), types
+                if content:
+                    self.assertLessEqual({"400", "411", "413"} | ({"415"} if types else set()), set(operation["responses"]), pattern)
+        self.assertEqual(described, found)
+
+    def test_every_route_has_rule_limit_and_problem(self):
         d = self.daemon
         document = d.ask("GET", "/openapi.json").json
         self.assertIn("transmittance", document["components"]["schemas"]["BakeRequest"]["properties"])
@@ -49,6 +75,12 @@ class Rim(unittest.TestCase):
                     head = (f"{method.upper()} {path} HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
                             f"Content-Length: 99999999999999\r\nTus-Resumable: 1.0.0\r\n\r\n").encode()
                     self.assertEqual(status_of(d.raw(head)), 413, (method, pattern))
+                    head = head.replace(b"Content-Length: 99999999999999\r\n", b"")
+                    if takes_body:  # neither length nor chunks
+                        self.assertEqual(status_of(d.raw(head)), 411, (method, pattern))
+                    if takes_body and "/blobs/" not in path:
+                        reply = d.ask(method.upper(), path, b"x", {"Content-Type": "text/plain", "Tus-Resumable": "1.0.0"})
+                        self.assertEqual((reply.status, reply.json["field"]), (415, "Content-Type"), (method, pattern))
                 self.assertTrue(takes_body or method not in ("put", "patch"))
 
     def test_what_is_not_there_is_a_problem(self):

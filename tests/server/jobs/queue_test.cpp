@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "server/store/pruning.h"
 #include "server/store/refusal.h"
 #include "tests/support/temporary_folder.h"
 
@@ -129,6 +130,27 @@ TEST_F(QueueTest, WhatRanAtAKillIsQueuedAtTheNextStart) {
     EXPECT_EQ(stage_state("T"), "done");
     EXPECT_EQ(stage_state("I"), "queued");
     EXPECT_EQ(bake_state("a"), "running");  // one of its stages is done
+}
+
+TEST_F(QueueTest, WhatEndedLongAgoAndWithoutAResultIsForgotten) {
+    queue.submit({bake("failed", "T1", "I1")}, "old batch", "{}");
+    queue.failed(*queue.claim(), {"bad_input", "broken", "hair"});
+    queue.submit({bake("live", "T2", "I1"), bake("done", "T3", "")}, "live batch", "{}");
+    const auto count = [&](const std::string& table) {
+        std::int64_t rows = 0;
+        database.read([&](Sql& sql) { rows = sql.rows("SELECT count(*) FROM " + table).at(0).integer(0); });
+        return rows;
+    };
+    prune(database, now() - 3600);  // nothing is that old
+    EXPECT_EQ(count("bakes"), 3);
+    prune(database, now() + 1);
+    EXPECT_EQ(count("bakes"), 2);
+    EXPECT_EQ(count("batches"), 1);  // of the other, no bake is left
+    EXPECT_EQ(count("batch_bakes"), 2);
+    EXPECT_EQ(stage_state("I1"), "queued");  // "live" needs it
+    EXPECT_EQ(count("stages"), 3);           // not T1
+    queue.submit({bake("failed", "T1", "I1")});  // it is taken as if it had never been
+    EXPECT_EQ(bake_state("failed"), "queued");
 }
 
 TEST_F(QueueTest, ALostBlobStartsItsStagesAndBakesAgain) {

@@ -1,0 +1,150 @@
+#include "server/http/body_schema.h"
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validator.hpp>
+
+#include "server/http/openapi.h"
+#include "server/http/replies.h"
+#include "server/store/refusal.h"
+
+namespace hairbake {
+namespace {
+
+using Json = nlohmann::json;
+using Adapter = valijson::adapters::NlohmannJsonAdapter;
+constexpr int deepest = 16;  // of a request; what is parsed later recurses no deeper than this
+constexpr std::size_t longest_value = 60, longest_schema = 600;
+
+struct BodySchema {
+    Json json;
+    valijson::Schema parsed;
+};
+
+/// Those of the requests' bodies: the others hold references.
+std::map<std::string, BodySchema> read_schemas() {
+    std::map<std::string, BodySchema> schemas;
+    const Json document = Json::parse(openapi());
+    for (const auto& [name, json] : document.at("components").at("schemas").items()) {
+        if (!name.ends_with("Request")) continue;
+        BodySchema& schema = schemas[name];
+        schema.json = json;
+        valijson::SchemaParser(valijson::SchemaParser::kDraft7).populateSchema(Adapter(schema.json), schema.parsed);
+    }
+    return schemas;
+}
+
+Json parse(const std::string& text) {
+    const auto shallow = [](int depth, Json::parse_event_t, Json&) {
+        if (depth > deepest) throw Refusal(Refused::malformed, "the body is nested too deeply");
+        return true;
+    };
+    try {
+        return Json::parse(text, shallow);
+    } catch (const Json::exception& error) {
+        throw Refusal(Refused::malformed, std::string("the body is not JSON: ") + error.what());
+    }
+}
+
+std::string shortened(std::string text, std::size_t length) {
+    return text.size() <= length ? text : text.substr(0, length) + "...";
+}
+
+/// Where the first error lies, walked from the root: `schema` may be null where several could be meant.
+struct Place {
+    Json::json_pointer pointer;
+    std::string field;  ///< "irradiance.lights[0].direction"
+    const Json* schema;
+
+    void enter(const std::string& name) {
+        pointer /= name;
+        field += (field.empty() ? "" : ".") + name;
+        schema = child("properties", name);
+    }
+    void enter(std::size_t index) {
+        pointer /= index;
+        field += "[" + std::to_string(index) + "]";
+        schema = schema && schema->contains("items") ? &schema->at("items") : nullptr;
+    }
+
+private:
+    const Json* child(const char* group, const std::string& name) const {
+        return schema && schema->contains(group) && schema->at(group).contains(name) ? &schema->at(group).at(name)
+                                                                                      : nullptr;
+    }
+};
+
+/// valijson names a place as ["<root>", "[irradiance]", "[lights]", "[0]"].
+Place place_of(const std::vector<std::string>& context, const Json& body, const Json& schema) {
+    Place place{{}, {}, &schema};
+    for (std::size_t i = 1; i < context.size(); ++i) {
+        const std::string inner = context[i].substr(1, context[i].size() - 2);
+        if (body.at(place.pointer).is_array())
+            place.enter(static_cast<std::size_t>(std::stoul(inner)));
+        else
+            place.enter(inner);
+    }
+    return place;
+}
+
+[[noreturn]] void refuse(const Place& place, const std::string& words) {
+    throw Refusal(Refused::unprocessable, words, place.field).at(place.pointer.to_string());
+}
+
+/// A name that the object has and may not have, or lacks and must have.
+void refuse_names(Place place, const Json& object) {
+    const Json properties = place.schema->value("properties", Json::object());
+    if (place.schema->value("additionalProperties", Json(true)) == Json(false))
+        for (const auto& [name, value] : object.items()) {
+            if (properties.contains(name)) continue;
+            std::string allowed;
+            for (const auto& [known, schema] : properties.items()) allowed += (allowed.empty() ? "" : ", ") + known;
+            place.enter(shortened(name, longest_value));
+            refuse(place, place.field + " is not a field; allowed are " + allowed);
+        }
+    for (const Json& name : place.schema->value("required", Json::array()))
+        if (!object.contains(name)) {
+            place.enter(name.get<std::string>());
+            refuse(place, place.field + " is missing");
+        }
+}
+
+/// The schema without what nests and what it says to people.
+std::string allowed_by(Json schema) {
+    const std::string description = schema.value("description", "");
+    for (const char* word : {"properties", "description", "title", "default"}) schema.erase(word);
+    return shortened(schema.dump(), longest_schema) + (description.empty() ? "" : ": " + description);
+}
+
+[[noreturn]] void explain(const valijson::ValidationResults& results, const Json& body, const Json& schema) {
+    const Place place = place_of(results.begin()->context, body, schema);
+    const Json found = body.contains(place.pointer) ? body.at(place.pointer) : Json();
+    if (place.schema && found.is_object()) refuse_names(place, found);
+    const std::string name = place.field.empty() ? "the body" : place.field;
+    const std::string value = shortened(found.dump(-1, ' ', false, Json::error_handler_t::replace), longest_value);
+    refuse(place, name + " is " + value + "; allowed is " +
+                      (place.schema ? allowed_by(*place.schema) : "what /openapi.json says"));
+}
+
+}  // namespace
+
+void check_json(const std::string& text, const std::string& name) {
+    static const std::map<std::string, BodySchema> schemas = read_schemas();
+    const BodySchema& schema = schemas.at(name);
+    const Json body = parse(text);
+    valijson::ValidationResults results;
+    valijson::Validator validator(valijson::Validator::kStrongTypes);
+    if (!validator.validate(schema.parsed, Adapter(body), &results)) explain(results, body, schema.json);
+}
+
+std::string read_json(const HttpRequest& request, const std::string& schema) {
+    std::string text = read_text(request);
+    check_json(text, schema);
+    return text;
+}
+
+}  // namespace hairbake

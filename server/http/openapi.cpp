@@ -1,0 +1,39 @@
+#include "server/http/openapi.h"
+
+#include <nlohmann/json.hpp>
+
+#include "core/request_presets.h"
+#include "server/http/embedded.h"
+
+namespace hairbake {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// What a request may say over HTTP and not on the command line, and the other way round.
+Json bake_request_schema() {
+    Json schema = Json::parse(request_schema());
+    schema.erase("$schema");
+    Json& properties = schema["properties"];
+    properties["priority"] = {{"description", "Bakes of a higher priority are started first."},
+                              {"type", "integer"},
+                              {"minimum", -10},
+                              {"maximum", 10},
+                              {"default", 0}};
+    properties["environment"]["description"] =
+        "HDR environment, sha256:... or name:...: one picture, lat-long or a cube's faces as a cross or a strip. Six "
+        "files of faces are for the command line; here, send them as one cross or strip.";
+    return schema;
+}
+
+}  // namespace
+
+std::string openapi() {
+    Json document = Json::parse(openapi_document());
+    Json& schemas = document["components"]["schemas"];
+    schemas["BakeRequest"] = bake_request_schema();
+    schemas["RebakeRequest"]["properties"]["irradiance"] = schemas["BakeRequest"]["properties"]["irradiance"];
+    return document.dump(1);
+}
+
+}  // namespace hairbake

@@ -1,0 +1,147 @@
+"""A store whose disk is full or cannot be written: a small tmpfs in a mount namespace of the daemon's own."""
+import errno
+import os
+import subprocess
+import unittest
+from pathlib import Path
+
+from harness import PATIENCE, Daemon, base64_text, hair_bytes, hdr_bytes, quick_request, sha256
+
+SIZE_MB = 8
+
+
+class SmallDisk(Daemon):
+    """The store is a tmpfs of SIZE_MB that only the daemon and its workers see; it is gone when the daemon ends."""
+
+    def __init__(self):
+        super().__init__()
+        self.store = self.path / "store"
+        self.store.mkdir()
+        mount = f'mount -t tmpfs -o size={SIZE_MB}m none "$0" && exec "$@"'
+        self.before = ["unshare", "--map-root-user", "--mount", "sh", "-c", mount, self.store]
+
+    @property
+    def inside(self):
+        """The store as the daemon sees it."""
+        return Path(f"/proc/{self.process.pid}/root{self.store}")
+
+    def run_inside(self, script):
+        subprocess.run(["nsenter", "--target", str(self.process.pid), "--user", "--mount", "--preserve-credentials", "sh", "-c",
+                        script, self.store], check=True, timeout=PATIENCE)
+
+    def fill(self, leave=0):
+        """Writes until nothing fits any more, then gives `leave` bytes free."""
+        with open(self.inside / "filler", "wb", buffering=0) as filler:
+            try:
+                while filler.write(bytes(4096)):
+                    pass
+            except OSError as error:
+                assert error.errno == errno.ENOSPC, error
+            filler.truncate(filler.tell() - leave)
+
+    def free(self):
+        (self.inside / "filler").unlink()
+
+    def leftovers(self):
+        return sorted(p.name for p in (self.inside / "tmp").iterdir())
+
+
+def verified(test, d, bake):
+    """Every file of the bake has the bytes that its digest names."""
+    files = d.ask("GET", f"/v1/bakes/{bake}").json["files"][1:]
+    test.assertTrue(files)
+    for file in files:
+        test.assertEqual(sha256(d.ask("GET", file["href"]).body), file["sha256"])
+
+
+class Disk(unittest.TestCase):
+    TUS = {"Tus-Resumable": "1.0.0"}
+
+    def assert_full(self, reply):
+        self.assertEqual((reply.status, reply.headers["Content-Type"]), (507, "application/problem+json"), reply.body)
+        self.assertEqual(reply.json["type"], "urn:hairbake:problem:full")
+
+    def test_a_full_disk_is_507_nothing_wrong_is_served_and_space_heals_it(self):
+        with SmallDisk() as d:
+            hair, sky = d.put(hair_bytes()), d.put(hdr_bytes())
+            bake = d.ask("POST", "/v1/bakes", quick_request(hair, sky)).json["id"]
+            self.assertEqual(d.wait(bake)["state"], "done")
+            data = os.urandom(300_000)
+            upload = d.ask("POST", "/v1/uploads", headers={**self.TUS, "Upload-Length": str(len(data)),
+                                                           "Upload-Metadata": f"sha256 {base64_text(sha256(data))}"}).headers["Location"]
+            d.fill()
+            self.assert_full(d.ask("PUT", f"/v1/blobs/{sha256(data)}", data))
+            self.assertEqual(d.ask("HEAD", f"/v1/blobs/{sha256(data)}").status, 404)
+            self.assert_full(self.patch(d, upload, 0, data))
+            self.assert_full(d.ask("PUT", "/v1/names/model/x", {"sha256": hair}))
+            self.assert_full(d.ask("POST", "/v1/bakes", quick_request(hair, sky, irradiance={"exponent": 9})))
+            self.assertEqual(d.ask("GET", "/healthz").status, 200)
+            ready = d.ask("GET", "/readyz")
+            self.assertEqual((ready.status, ready.json["type"]), (503, "urn:hairbake:problem:not-ready"))
+            self.assertIn("No space left", ready.json["detail"])
+            self.assertEqual(d.ask("POST", "/v1/bakes", quick_request(hair, sky)).status, 200)  # done before: nothing is written
+            verified(self, d, bake)
+            self.assertEqual(d.leftovers(), [])
+
+            d.free()
+            self.assertEqual(d.ask("GET", "/readyz").status, 200)
+            offset = int(d.ask("HEAD", upload, headers=self.TUS).headers["Upload-Offset"])
+            self.assertEqual(self.patch(d, upload, offset, data[offset:]).status, 204)
+            self.assertEqual(d.ask("GET", f"/v1/blobs/{sha256(data)}").body, data)
+            again = d.ask("POST", "/v1/bakes", quick_request(hair, sky, irradiance={"exponent": 9}))
+            self.assertEqual(d.wait(again.json["id"])["state"], "done")
+            verified(self, d, again.json["id"])
+
+    def patch(self, d, path, offset, data):
+        return d.ask("PATCH", path, data, {**self.TUS, "Upload-Offset": str(offset),
+                                           "Content-Type": "application/offset+octet-stream"})
+
+    def test_a_result_that_does_not_fit_fails_its_bake_and_space_lets_it_bake(self):
+        with SmallDisk() as d:
+            sky = d.put(hdr_bytes())
+            # (33 + 1) maps of 6 x 48 x 48 texels of 12 bytes are 5.6 MB: more than is left, less than the disk.
+            request = quick_request(environment=sky, irradiance={"face_size": 48, "specular_maps": 33})
+            d.fill(leave=1 << 20)
+            bake = d.ask("POST", "/v1/bakes", request).json["id"]
+            view = d.wait(bake)
+            self.assertEqual((view["state"], view["error"]["kind"]), ("failed", "out_of_resources"), view)
+            self.assertIn("No space left", view["error"]["message"])
+            self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}/files/specular.npy").status, 409)
+            self.assertEqual(d.leftovers(), [])
+            d.free()
+            self.assertEqual(d.ask("POST", "/v1/bakes", request).json["id"], bake)
+            self.assertEqual(d.wait(bake)["state"], "done")
+            verified(self, d, bake)
+
+    def test_a_store_that_cannot_be_written_is_507_and_readyz_says_so(self):
+        with SmallDisk() as d:
+            hair = d.put(hair_bytes())
+            bake = d.ask("POST", "/v1/bakes", quick_request(hair)).json["id"]
+            self.assertEqual(d.wait(bake)["state"], "done")
+            d.run_inside('mount --bind "$0" "$0" && mount -o remount,bind,ro "$0"')
+            reply = d.ask("PUT", f"/v1/blobs/{sha256(b'x')}", b"x")
+            self.assert_full(reply)
+            self.assertIn("cannot be written", reply.json["detail"])
+            ready = d.ask("GET", "/readyz")
+            self.assertEqual(ready.status, 503)
+            self.assertIn("Read-only", ready.json["detail"])
+            other = quick_request(hair, transmittance={"seed": 2, "direction_set": "random"})
+            view = d.wait(d.ask("POST", "/v1/bakes", other).json["id"])  # the database was open before
+            self.assertEqual((view["state"], view["error"]["kind"]), ("failed", "out_of_resources"))
+            verified(self, d, bake)
+            d.run_inside('umount "$0"')
+            self.assertEqual(d.ask("GET", "/readyz").status, 200)
+            self.assertEqual(d.wait(d.ask("POST", "/v1/bakes", other).json["id"])["state"], "done")
+
+    def test_a_store_that_cannot_be_written_stops_the_start_with_the_reason(self):
+        with SmallDisk() as d:
+            d.stop()
+            d.before[5] = 'mount -t tmpfs -o ro none "$0" && exec "$@"'
+            process = d.spawn()
+            self.assertNotEqual(process.wait(PATIENCE), 0)
+            process.stdout.close()
+            self.assertIn("Read-only file system", (d.path / "log").read_text())
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,100 @@
+"""Hostile inputs and workers that misbehave: the job fails with the reason, the daemon and the other jobs do not notice."""
+import json
+import unittest
+
+from harness import PROGRAMS, Daemon, hair_bytes, hdr_bytes, quick_request
+from hostile_files import exr_bytes, hostile_environments, hostile_hair
+from test_limits import memory_kb
+
+GROWTH_MB = 64  # of the daemon, which reads none of these files
+
+
+class HostileInputs(unittest.TestCase):
+    def test_each_fails_its_bake_with_the_reason_and_the_next_bake_works(self):
+        with Daemon(workers=2, limits="memory_mb = 1024") as d:
+            hair, sky = d.put(hair_bytes()), d.put(exr_bytes())
+            before = memory_kb(d.process.pid, "VmRSS")
+            asked = {}
+            for field, files in (("hair", hostile_hair()), ("environment", hostile_environments()),
+                                 ("occluder", {"an absurd face": b"v 0 0 0\nf 1 2 999999999999\n", "no mesh": b"\0" * 100})):
+                for name, data in files.items():
+                    request = {**quick_request(hair if field == "occluder" else None), field: f"sha256:{d.put(data)}"}
+                    reply = d.ask("POST", "/v1/bakes", request)
+                    self.assertEqual(reply.status, 202, (name, reply.body))
+                    asked[field, name] = reply.json["id"]
+            for key, bake in asked.items():
+                view = d.wait(bake)
+                self.assertEqual(view["state"], "failed", key)
+                self.assertEqual(view["error"]["kind"], "bad_input", (key, view["error"]))
+                self.assertIn("sha256:", view["error"]["message"], key)  # which file; not its place in the store
+                self.assertNotIn(str(d.path), json.dumps(view), key)
+                self.assertEqual(view["stages"][0]["attempts"], 1, key)  # it would fail again
+            good = d.ask("POST", "/v1/bakes", quick_request(hair, sky)).json["id"]
+            self.assertEqual(d.wait(good)["state"], "done")
+            self.assertLessEqual(memory_kb(d.process.pid, "VmHWM") - before, GROWTH_MB * 1024)
+            self.assertEqual(d.leftovers(), [])
+
+    def test_a_hostile_body_is_refused(self):
+        with Daemon() as d:
+            for name, body in {"nested arrays": "[" * 500_000, "nested objects": '{"a":' * 150_000,
+                               "deep and whole": '{"hair":' + "[" * 1000 + "]" * 1000 + "}",
+                               "no UTF-8": b'{"hair": "\xff\xfe"}', "two values": "{} {}", "a number too large": '{"hair": 1e999}',
+                               "a comment": "{/* */}", "nothing": "", "zeros": b"\0" * 1000}.items():
+                for path in ("/v1/bakes", "/v1/rebakes", "/v1/models", "/v1/environments"):
+                    reply = d.ask("POST", path, body, {"Content-Type": "application/json"})
+                    self.assertEqual(reply.status in (400, 413), True, (name, path, reply.status, reply.body[:200]))
+                    self.assertEqual(reply.headers["Content-Type"], "application/problem+json")
+            self.assertEqual(d.ask("GET", "/healthz").status, 200)
+
+
+# Stands for hairbake-worker: misbehaves as the seed of the task says, else is the real one.
+WORKER = """#!/bin/sh
+task=$(cat)
+case $task in
+*'"seed":11,'*) kill -SEGV $$ ;;
+*'"seed":12,'*) exec sleep 1000 ;;
+*'"seed":13,'*) trap '' TERM; sleep 1000; sleep 1000 ;;
+*'"seed":14,'*) while :; do printf 'xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx'; done ;;
+*'"seed":15,'*) echo '{"done":{}}' ;;
+*'"seed":16,'*) exit 3 ;;
+*'"seed":17,'*) echo '{"error":{"kind":"bad_input","message":"as I say","field":"hair"}}'; exit 1 ;;
+*'"seed":18,'*) echo '{"phase":"write","fraction":"x"}'; echo '[[[['; echo '{"error":[]}'; echo '{"done":'; exit 0 ;;
+*) printf %s "$task" | "REAL" ;;
+esac
+"""
+
+
+class BadWorkers(unittest.TestCase):
+    def test_each_fails_its_job_with_the_reason_and_leaves_the_others_alone(self):
+        with Daemon(workers=2, max_crashes=0) as d:
+            d.stop()
+            program = d.path / "worker"
+            program.write_text(WORKER.replace("REAL", str(PROGRAMS / "hairbake-worker")))
+            program.chmod(0o755)
+            d.limits = f'program = "{program}"\nwall_s = 15'
+            d.start()
+            hair = d.put(hair_bytes())
+
+            def post(seed):
+                reply = d.ask("POST", "/v1/bakes", quick_request(hair, transmittance={"seed": seed, "direction_set": "random"}))
+                self.assertEqual(reply.status, 202, reply.body)
+                return reply.json["id"]
+
+            words = {11: "Segmentation fault", 12: "not done after 15 seconds", 13: "not done after 15 seconds",
+                     14: "not done after 15 seconds", 15: "manifest", 16: "ended with code 3", 17: "as I say",
+                     18: "ended with code 0"}
+            bakes = {seed: post(seed) for seed in [*words, 1, 2]}
+            for seed, word in words.items():
+                view = d.wait(bakes[seed])
+                self.assertEqual(view["state"], "failed", seed)
+                self.assertIn(word, view["error"]["message"], seed)
+            for seed in (1, 2):
+                self.assertEqual(d.wait(bakes[seed])["state"], "done")
+            d.wait_for_worker(running=False)
+            self.assertEqual(d.leftovers(), [])
+            self.assertLess(memory_kb(d.process.pid, "VmHWM"), 256 * 1024)  # what one worker talked was not kept
+            self.assertEqual(d.ask("GET", "/readyz").status, 200)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,165 @@
+"""What a client may take of the daemon: memory, connections, sockets, unfinished uploads."""
+import hashlib
+import json
+import os
+import re
+import subprocess
+import unittest
+
+from harness import PATIENCE, PROGRAMS, Daemon, base64_text, hair_bytes, hdr_bytes, quick_request, sha256
+
+MEGABYTE = 1 << 20
+UPLOAD_MB, GROWTH_MB = 500, 64  # what the issue says
+PIECE = os.urandom(MEGABYTE)
+
+
+def memory_kb(process, field):
+    """A line of /proc/PID/status in kB: VmRSS is now, VmHWM the most there ever was."""
+    with open(f"/proc/{process}/status") as status:
+        return int(re.search(rf"{field}:\s+(\d+) kB", status.read()).group(1))
+
+
+def head(method, path, *lines):
+    return "\r\n".join([f"{method} {path} HTTP/1.1", "Host: localhost", *lines, "", ""]).encode()
+
+
+def reply_on(connection):
+    """Status, headers and body of what comes until the connection closes; an interim 100 is left out."""
+    data = b""
+    while piece := connection.recv(65536):
+        data += piece
+    data = data.removeprefix(b"HTTP/1.1 100 Continue\r\n\r\n")
+    top, _, body = data.partition(b"\r\n\r\n")
+    lines = top.decode().split("\r\n")
+    return int(lines[0].split()[1]), dict(line.split(": ", 1) for line in lines[1:]), body
+
+
+class BigUploads(unittest.TestCase):
+    def test_half_a_gigabyte_grows_the_daemon_by_at_most_64_mb(self):
+        whole = hashlib.sha256()
+        for number in range(UPLOAD_MB):
+            whole.update(number.to_bytes(4, "little") + PIECE[4:])
+        path = f"/v1/blobs/{whole.hexdigest()}"
+        for framing in (f"Content-Length: {UPLOAD_MB * MEGABYTE}", "Transfer-Encoding: chunked"):
+            chunked = "chunked" in framing
+            with Daemon() as d, d.connect() as s:
+                before = memory_kb(d.process.pid, "VmRSS")
+                s.sendall(head("PUT", path, framing))
+                for number in range(UPLOAD_MB):
+                    data = number.to_bytes(4, "little") + PIECE[4:]
+                    s.sendall(b"%x\r\n" % MEGABYTE + data + b"\r\n" if chunked else data)
+                if chunked:
+                    s.sendall(b"0\r\n\r\n")
+                self.assertEqual(reply_on(s)[0], 201, framing)
+                grown = memory_kb(d.process.pid, "VmHWM") - before
+                self.assertLessEqual(grown, GROWTH_MB * 1024, framing)
+                # So does sending it back.
+                with d.connect() as back:
+                    back.sendall(head("GET", path))
+                    found, data = hashlib.sha256(), b""
+                    while b"\r\n\r\n" not in data:
+                        data += back.recv(65536)
+                    found.update(data.partition(b"\r\n\r\n")[2])
+                    while data := back.recv(MEGABYTE):
+                        found.update(data)
+                self.assertEqual(found.hexdigest(), whole.hexdigest())
+                self.assertLessEqual(memory_kb(d.process.pid, "VmHWM") - before, GROWTH_MB * 1024, framing)
+
+    def test_a_length_over_the_limit_is_refused_before_a_byte_of_it_is_sent(self):
+        with Daemon(config="blob_mb = 1") as d:
+            status, headers, body = reply_on_only_head(d, f"Content-Length: {MEGABYTE + 1}")
+            self.assertEqual((status, headers["Content-Type"]), (413, "application/problem+json"))
+            self.assertIn(f"allowed is up to {MEGABYTE}", json.loads(body)["detail"])
+            # With Expect, the client is not even asked for it.
+            self.assertEqual(reply_on_only_head(d, f"Content-Length: {MEGABYTE + 1}", "Expect: 100-continue")[0], 413)
+
+    def test_chunks_over_the_limit_are_refused_as_soon_as_they_pass_it(self):
+        with Daemon(config="blob_mb = 1") as d, d.connect() as s:
+            s.sendall(head("PUT", f"/v1/blobs/{'0' * 64}", "Transfer-Encoding: chunked"))
+            chunk = b"%x\r\n" % MEGABYTE + PIECE + b"\r\n"
+            s.sendall(chunk)
+            s.sendall(b"1\r\nx\r\n")  # one byte too many; there is no last chunk
+            self.assertEqual(reply_on(s)[0], 413)
+            self.assertEqual(d.leftovers(), [])
+
+
+def reply_on_only_head(daemon, *lines):
+    with daemon.connect() as s:
+        s.sendall(head("PUT", f"/v1/blobs/{'0' * 64}", *lines))
+        return reply_on(s)
+
+
+class Connections(unittest.TestCase):
+    def test_a_full_queue_answers_503_and_says_when_to_come_again(self):
+        with Daemon(listen="port = 0\nthreads = 2\nwaiting = 3") as d:
+            held = []
+            for _ in range(2):  # each holds a thread: it was asked for its body
+                s = d.connect()
+                s.sendall(head("PUT", f"/v1/blobs/{sha256(b'hello')}", "Content-Length: 5", "Expect: 100-continue"))
+                self.assertTrue(s.recv(100).startswith(b"HTTP/1.1 100"))
+                held.append(s)
+            idle = [d.connect() for _ in range(3)]  # these fill the queue, in the order in which they came
+            reply = d.ask("GET", "/healthz")
+            self.assertEqual((reply.status, reply.headers["Retry-After"], reply.headers["Content-Type"]),
+                             (503, "2", "application/problem+json"))
+            self.assertEqual(reply.json["type"], "urn:hairbake:problem:busy")
+            for s in held:
+                s.sendall(b"hello")
+                self.assertIn(reply_on(s)[0], (200, 201))
+                s.close()
+            for s in idle:
+                s.close()
+            self.assertEqual(d.ask("GET", "/healthz").status, 200)
+
+    def test_one_token_has_so_many_unfinished_uploads(self):
+        with Daemon(config="open_uploads = 2") as d:
+            def create():
+                return d.ask("POST", "/v1/uploads", headers={"Tus-Resumable": "1.0.0", "Upload-Length": "5",
+                                                             "Upload-Metadata": f"sha256 {base64_text(sha256(b'hello'))}"})
+            first, second, third = create(), create(), create()
+            self.assertEqual([first.status, second.status, third.status], [201, 201, 429])
+            self.assertEqual((third.json["type"], third.headers["Retry-After"]), ("urn:hairbake:problem:too-many", "60"))
+            d.ask("DELETE", first.headers["Location"], headers={"Tus-Resumable": "1.0.0"})
+            self.assertEqual(create().status, 201)
+
+
+class UnixSocket(unittest.TestCase):
+    def test_bakes_through_it_and_survives_a_kill(self):
+        with SocketDaemon() as d:
+            self.assertEqual(d.port, None)
+            mode = os.stat(d.address).st_mode
+            self.assertEqual(oct(mode & 0o777), "0o660")  # owner and group: nginx is in the group
+            bake = d.ask("POST", "/v1/bakes", quick_request(d.put(hair_bytes()), d.put(hdr_bytes()))).json["id"]
+            self.assertEqual(d.wait(bake)["state"], "done")
+            d.kill()
+            self.assertTrue(os.path.exists(d.address))  # what a killed daemon leaves
+            d.start()
+            self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}").json["state"], "done")
+
+    def test_a_socket_that_somebody_listens_on_and_a_file_are_left_alone(self):
+        with SocketDaemon() as d, SocketDaemon() as other:
+            for place, words in ((d.address, "somebody listens on the socket"), (str(d.path / "log"), "is no socket")):
+                code, log = other.start_on(place)
+                self.assertEqual(code, 2)
+                self.assertIn(words, log)
+            self.assertEqual(d.ask("GET", "/healthz").status, 200)
+            self.assertTrue((d.path / "log").exists())
+
+
+class SocketDaemon(Daemon):
+    """Listens on a socket in its folder."""
+
+    def __init__(self):
+        super().__init__()
+        self.listen = f'socket = "{self.path / "daemon.sock"}"'
+
+    def start_on(self, place):
+        """Exit code and log of a second daemon with the same store settings, but a folder of its own."""
+        config = self.path / "other.toml"
+        config.write_text(f'[listen]\nsocket = "{place}"\n[store]\nfolder = "other"\n')
+        done = subprocess.run([PROGRAMS / "hairbaked", "--config", config], capture_output=True, text=True, timeout=PATIENCE)
+        return done.returncode, done.stderr
+
+
+if __name__ == "__main__":
+    unittest.main()
