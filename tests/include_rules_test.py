@@ -32,7 +32,7 @@ TABLE = [
 ]
 OURS = re.compile(r"(core|clients|server|tests)/")
 # Libraries that stay in .cpp files.
-IN_SOURCES_ONLY = re.compile(r"(openvdb|embree\d|OpenImageIO|hwy)/|(httplib|sqlite3|tiny_gltf|tiny_obj_loader)\.h")
+IN_SOURCES_ONLY = re.compile(r"(openvdb|embree\d|OpenImageIO|hwy|valijson)/|(httplib|sqlite3|tiny_gltf|tiny_obj_loader)\.h")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 

@@ -10,7 +10,7 @@
 
 #include "server/http/openapi.h"
 #include "server/http/replies.h"
-#include "server/store/refusal.h"
+#include "server/jobs/service.h"
 
 namespace hairbake {
 namespace {

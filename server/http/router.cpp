@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "server/http/problem.h"
-#include "server/store/refusal.h"
+#include "server/jobs/service.h"
 
 namespace hairbake {
 namespace {

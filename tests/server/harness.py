@@ -104,6 +104,11 @@ class Daemon:
         self.process.stdout.close()
         return code, time.monotonic() - begin
 
+    def memory_kb(self, field):
+        """A line of /proc/PID/status in kB: VmRSS is now, VmHWM the most there ever was."""
+        status = Path(f"/proc/{self.process.pid}/status").read_text()
+        return int(next(line.split()[1] for line in status.splitlines() if line.startswith(field)))
+
     def workers_running(self):
         """Process ids of the daemon's children that are not dead yet."""
         found = []

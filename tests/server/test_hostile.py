@@ -4,7 +4,6 @@ import unittest
 
 from harness import PROGRAMS, Daemon, hair_bytes, hdr_bytes, quick_request
 from hostile_files import exr_bytes, hostile_environments, hostile_hair
-from test_limits import memory_kb
 
 GROWTH_MB = 64  # of the daemon, which reads none of these files
 
@@ -13,7 +12,7 @@ class HostileInputs(unittest.TestCase):
     def test_each_fails_its_bake_with_the_reason_and_the_next_bake_works(self):
         with Daemon(workers=2, limits="memory_mb = 1024") as d:
             hair, sky = d.put(hair_bytes()), d.put(exr_bytes())
-            before = memory_kb(d.process.pid, "VmRSS")
+            before = d.memory_kb("VmRSS")
             asked = {}
             for field, files in (("hair", hostile_hair()), ("environment", hostile_environments()),
                                  ("occluder", {"an absurd face": b"v 0 0 0\nf 1 2 999999999999\n", "no mesh": b"\0" * 100})):
@@ -31,7 +30,7 @@ class HostileInputs(unittest.TestCase):
                 self.assertEqual(view["stages"][0]["attempts"], 1, key)  # it would fail again
             good = d.ask("POST", "/v1/bakes", quick_request(hair, sky)).json["id"]
             self.assertEqual(d.wait(good)["state"], "done")
-            self.assertLessEqual(memory_kb(d.process.pid, "VmHWM") - before, GROWTH_MB * 1024)
+            self.assertLessEqual(d.memory_kb("VmHWM") - before, GROWTH_MB * 1024)
             self.assertEqual(d.leftovers(), [])
 
     def test_a_hostile_body_is_refused(self):
@@ -92,7 +91,7 @@ class BadWorkers(unittest.TestCase):
                 self.assertEqual(d.wait(bakes[seed])["state"], "done")
             d.wait_for_worker(running=False)
             self.assertEqual(d.leftovers(), [])
-            self.assertLess(memory_kb(d.process.pid, "VmHWM"), 256 * 1024)  # what one worker talked was not kept
+            self.assertLess(d.memory_kb("VmHWM"), 256 * 1024)  # what one worker talked was not kept
             self.assertEqual(d.ask("GET", "/readyz").status, 200)
 
 

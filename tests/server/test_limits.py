@@ -2,7 +2,6 @@
 import hashlib
 import json
 import os
-import re
 import subprocess
 import unittest
 
@@ -11,12 +10,6 @@ from harness import PATIENCE, PROGRAMS, Daemon, base64_text, hair_bytes, hdr_byt
 MEGABYTE = 1 << 20
 UPLOAD_MB, GROWTH_MB = 500, 64  # what the issue says
 PIECE = os.urandom(MEGABYTE)
-
-
-def memory_kb(process, field):
-    """A line of /proc/PID/status in kB: VmRSS is now, VmHWM the most there ever was."""
-    with open(f"/proc/{process}/status") as status:
-        return int(re.search(rf"{field}:\s+(\d+) kB", status.read()).group(1))
 
 
 def head(method, path, *lines):
@@ -43,7 +36,7 @@ class BigUploads(unittest.TestCase):
         for framing in (f"Content-Length: {UPLOAD_MB * MEGABYTE}", "Transfer-Encoding: chunked"):
             chunked = "chunked" in framing
             with Daemon() as d, d.connect() as s:
-                before = memory_kb(d.process.pid, "VmRSS")
+                before = d.memory_kb("VmRSS")
                 s.sendall(head("PUT", path, framing))
                 for number in range(UPLOAD_MB):
                     data = number.to_bytes(4, "little") + PIECE[4:]
@@ -51,7 +44,7 @@ class BigUploads(unittest.TestCase):
                 if chunked:
                     s.sendall(b"0\r\n\r\n")
                 self.assertEqual(reply_on(s)[0], 201, framing)
-                grown = memory_kb(d.process.pid, "VmHWM") - before
+                grown = d.memory_kb("VmHWM") - before
                 self.assertLessEqual(grown, GROWTH_MB * 1024, framing)
                 # So does sending it back.
                 with d.connect() as back:
@@ -63,7 +56,7 @@ class BigUploads(unittest.TestCase):
                     while data := back.recv(MEGABYTE):
                         found.update(data)
                 self.assertEqual(found.hexdigest(), whole.hexdigest())
-                self.assertLessEqual(memory_kb(d.process.pid, "VmHWM") - before, GROWTH_MB * 1024, framing)
+                self.assertLessEqual(d.memory_kb("VmHWM") - before, GROWTH_MB * 1024, framing)
 
     def test_a_length_over_the_limit_is_refused_before_a_byte_of_it_is_sent(self):
         with Daemon(config="blob_mb = 1") as d:
