@@ -20,5 +20,12 @@ void add_compare_command(CLI::App& app, Action& action);
 void add_render_command(CLI::App& app, Action& action);
 void add_diff_command(CLI::App& app, Action& action);
 void add_presets_command(CLI::App& app, Action& action);
+void add_submit_command(CLI::App& app, Action& action);
+void add_status_command(CLI::App& app, Action& action);
+void add_wait_command(CLI::App& app, Action& action);
+void add_fetch_command(CLI::App& app, Action& action);
+void add_cancel_command(CLI::App& app, Action& action);
+void add_rebake_command(CLI::App& app, Action& action);
+void add_upload_command(CLI::App& app, Action& action);
 
 }  // namespace hairbake

@@ -1,9 +1,13 @@
 #include "clients/cli/exit_code.h"
 
+#include <cstdio>
 #include <new>
 #include <system_error>
 
+#include "clients/cli/progress_display.h"
+
 namespace hairbake {
+namespace {
 
 ExitCode exit_code(ErrorKind kind) {
     switch (kind) {
@@ -20,16 +24,28 @@ ExitCode exit_code(ErrorKind kind) {
     }
 }
 
-std::string name_of(ErrorKind kind) {
-    switch (kind) {
-        case ErrorKind::usage:
+}  // namespace
+
+std::string name_of(ExitCode code) {
+    switch (code) {
+        case ExitCode::ok:
+            return "done";
+        case ExitCode::usage:
             return "usage";
-        case ErrorKind::bad_input:
+        case ExitCode::bad_input:
             return "bad input";
-        case ErrorKind::out_of_resources:
+        case ExitCode::out_of_resources:
             return "out of resources";
-        case ErrorKind::cancelled:
+        case ExitCode::cancelled:
             return "cancelled";
+        case ExitCode::unreachable:
+            return "server unreachable";
+        case ExitCode::refused:
+            return "refused";
+        case ExitCode::bake_failed:
+            return "bake failed";
+        case ExitCode::bake_cancelled:
+            return "bake cancelled";
         default:
             return "internal";
     }
@@ -45,20 +61,45 @@ std::string exit_code_help() {
            "  5  cancelled: SIGINT (Ctrl-C) or SIGTERM; nothing half-written remains\n";
 }
 
-Error current_error() {
+std::string remote_exit_code_help() {
+    return exit_code_help() +
+           "  6  server unreachable: no answer within --patience, or its certificate is not trusted\n"
+           "  7  refused: the server refuses, or answers what is not to be trusted\n"
+           "  8  bake failed: the server tried; the message is the reason\n"
+           "  9  bake cancelled: somebody cancelled it on the server\n"
+           "5 leaves a bake running on the server, and what was sent or fetched so far: the same command goes on "
+           "there.\n";
+}
+
+Failure current_failure() {
     try {
         throw;
+    } catch (const RemoteError& error) {
+        return {error.code(), error.what(), error.field()};
     } catch (const Error& error) {
-        return error;
+        return {exit_code(error.kind()), error.what(), error.field()};
     } catch (const std::bad_alloc&) {
-        return {ErrorKind::out_of_resources, "memory ran out"};
+        return {ExitCode::out_of_resources, "memory ran out", ""};
     } catch (const std::system_error& error) {
         const bool full = error.code() == std::errc::no_space_on_device ||
                           error.code() == std::errc::not_enough_memory ||
                           error.code() == std::errc::resource_unavailable_try_again;
-        return {full ? ErrorKind::out_of_resources : ErrorKind::bad_input, error.what()};
+        return {full ? ExitCode::out_of_resources : ExitCode::bad_input, error.what(), ""};
     } catch (const std::exception& error) {
-        return {ErrorKind::internal, error.what()};
+        return {ExitCode::internal, error.what(), ""};
+    }
+}
+
+void with_json_failures(const std::string& progress_mode, const std::function<void()>& work) {
+    try {
+        work();
+    } catch (...) {
+        const Failure failure = current_failure();
+        if (progress_mode == "json")
+            std::printf("{\"event\":\"error\",\"kind\":%s,\"field\":%s,\"message\":%s}\n",
+                        json_string(name_of(failure.code)).c_str(), json_string(failure.field).c_str(),
+                        json_string(failure.message).c_str());
+        throw;
     }
 }
 

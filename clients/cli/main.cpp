@@ -10,10 +10,10 @@
 namespace {
 
 int report_failure() {
-    const hairbake::Error error = hairbake::current_error();
-    const bool defect = error.kind() == hairbake::ErrorKind::internal;
-    hairbake::say_error(defect ? std::string("a defect of hairbake: ") + error.what() : error.what());
-    return static_cast<int>(hairbake::exit_code(error.kind()));
+    const hairbake::Failure failure = hairbake::current_failure();
+    const bool defect = failure.code == hairbake::ExitCode::internal;
+    hairbake::say_error(defect ? "a defect of hairbake: " + failure.message : failure.message);
+    return static_cast<int>(failure.code);
 }
 
 }  // namespace
@@ -24,7 +24,7 @@ int main(int argc, char** argv) {
     hairbake::Action action;
     app.set_version_flag("--version", "hairbake " + hairbake::version());
     app.require_subcommand(1);
-    app.footer(hairbake::exit_code_help());
+    app.footer(hairbake::remote_exit_code_help());
     hairbake::add_bake_command(app, action);
     hairbake::add_info_command(app, action);
     hairbake::add_sample_command(app, action);
@@ -32,6 +32,13 @@ int main(int argc, char** argv) {
     hairbake::add_render_command(app, action);
     hairbake::add_diff_command(app, action);
     hairbake::add_presets_command(app, action);
+    hairbake::add_submit_command(app, action);
+    hairbake::add_status_command(app, action);
+    hairbake::add_wait_command(app, action);
+    hairbake::add_fetch_command(app, action);
+    hairbake::add_cancel_command(app, action);
+    hairbake::add_rebake_command(app, action);
+    hairbake::add_upload_command(app, action);
     try {
         app.parse(argc, argv);
         action();

@@ -17,6 +17,7 @@ spdlog::logger& logger() {
 
 }  // namespace
 
+void say_note(const std::string& text) { logger().info("{}", text); }
 void say_warning(const std::string& text) { logger().warn("{}", text); }
 void say_error(const std::string& text) { logger().error("{}", text); }
 

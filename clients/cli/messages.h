@@ -5,7 +5,9 @@
 
 namespace hairbake {
 
-/// "hairbake: warning: ..." and "hairbake: error: ...", the level in colour on a terminal. Thread-safe.
+/// "hairbake: info: ...", "hairbake: warning: ..." and "hairbake: error: ...", the level in colour on a terminal.
+/// Thread-safe.
+void say_note(const std::string& text);
 void say_warning(const std::string& text);
 void say_error(const std::string& text);
 

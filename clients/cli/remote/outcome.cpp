@@ -1,0 +1,108 @@
+#include "clients/cli/remote/outcome.h"
+
+#include <chrono>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "clients/cli/messages.h"
+#include "clients/cli/remote/fetch.h"
+
+namespace hairbake {
+namespace {
+
+using Json = Server::Json;
+using Clock = std::chrono::steady_clock;
+
+void tell_done(const ConnectionFlags& flags, const EndedBake& bake, const std::string& folder, const Fetched& fetched,
+               double seconds, const std::string& remark) {
+    if (flags.json()) {
+        Json line{{"event", "done"}, {"id", bake.id}};
+        if (!folder.empty()) line.update({{"folder", folder}, {"received_bytes", fetched.received}});
+        return print_line(line.dump(-1, ' ', false, Json::error_handler_t::replace));
+    }
+    char took[40];
+    std::snprintf(took, sizeof took, " done in %.1f s", seconds);
+    std::string line = bake.id + took + remark;
+    if (!folder.empty())
+        line += "; " + folder + ": " + std::to_string(fetched.files) + " files, " + in_megabytes(fetched.bytes) + ", " +
+                in_megabytes(fetched.received) + " of it received";
+    print_line(line);
+}
+
+void tell_not_done(const ConnectionFlags& flags, const EndedBake& bake) {
+    if (flags.json())
+        print_line(Json{{"event", bake.state}, {"id", bake.id}, {"field", bake.field}, {"message", bake.message}}.dump(
+            -1, ' ', false, Json::error_handler_t::replace));
+}
+
+std::string reason(const EndedBake& bake) {
+    std::string text = "bake " + bake.id + (bake.state == "failed" ? " failed" : " was cancelled");
+    if (!bake.message.empty()) text += ": " + bake.message;
+    if (!bake.field.empty() && bake.message.find(bake.field) == std::string::npos) text += " (" + bake.field + ")";
+    return text;
+}
+
+/// Throws when some are not done.
+void judge(const ConnectionFlags& flags, const std::vector<EndedBake>& bakes) {
+    std::vector<const EndedBake*> lost;
+    for (const EndedBake& bake : bakes)
+        if (bake.state != "done") lost.push_back(&bake);
+    if (lost.empty()) return;
+    bool failed = false;
+    for (const EndedBake* bake : lost) {
+        failed = failed || bake->state == "failed";
+        tell_not_done(flags, *bake);
+        if (lost.size() > 1) say_warning(reason(*bake));
+    }
+    const ExitCode code = failed ? ExitCode::bake_failed : ExitCode::bake_cancelled;
+    if (lost.size() == 1) throw RemoteError(code, reason(*lost[0]), lost[0]->field);
+    throw RemoteError(code, std::to_string(lost.size()) + " of " + std::to_string(bakes.size()) + " bakes " +
+                                (failed ? "failed" : "were cancelled"));
+}
+
+void tell_how_to_go_on(const ServerOptions& options, const std::string& which) {
+    const std::string rest = which + " --server " + options.url;
+    say_note("the server goes on baking; \"hairbake wait " + rest + "\" waits again. \"hairbake cancel " + rest +
+             "\" cancels it.");
+}
+
+}  // namespace
+
+void print_line(const std::string& line) {
+    std::printf("%s\n", line.c_str());
+    std::fflush(stdout);
+}
+
+std::string in_megabytes(std::uint64_t bytes) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.1f MB", static_cast<double>(bytes) / 1e6);
+    return text;
+}
+
+void await_bakes(const ConnectionFlags& flags, const ServerOptions& options, const Awaited& awaited) {
+    const Clock::time_point start = Clock::now();
+    std::vector<EndedBake> bakes;
+    std::vector<Fetched> fetched;
+    bool ended = false;
+    try {
+        run_phase(flags, options, {{"bake", 20}, {"fetch", 3}}, [&](Server& server) {
+            bakes = awaited.wait(server);
+            ended = true;
+            for (EndedBake& bake : bakes) {
+                bake.message = awaited.words(bake.message);
+                const std::string folder = bake.state == "done" ? awaited.folder(bake.id) : "";
+                fetched.push_back(folder.empty() ? Fetched() : fetch_result(server, bake.id, folder));
+            }
+        });
+    } catch (const Error& error) {
+        if (!ended && error.kind() == ErrorKind::cancelled) tell_how_to_go_on(options, awaited.which);
+        throw;
+    }
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    for (std::size_t i = 0; i < bakes.size(); ++i)
+        if (bakes[i].state == "done")
+            tell_done(flags, bakes[i], awaited.folder(bakes[i].id), fetched[i], seconds, awaited.remark);
+    judge(flags, bakes);
+}
+
+}  // namespace hairbake

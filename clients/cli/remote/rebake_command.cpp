@@ -1,0 +1,122 @@
+// hairbake rebake
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "clients/cli/commands.h"
+#include "clients/cli/messages.h"
+#include "clients/cli/remote/outcome.h"
+#include "clients/cli/remote/upload.h"
+
+namespace hairbake {
+namespace {
+
+using Json = Server::Json;
+
+struct Options {
+    ConnectionFlags connection;
+    std::string environment, replaces, name, irradiance, folder;
+    std::vector<std::string> bakes, models;
+    int priority = 0;
+    bool dry_run = false, wait = false;
+};
+
+/// The request; files among its values must have been sent.
+Json body_of(const Options& options, const InputFiles& inputs) {
+    Json body{{"environment", inputs.reference(options.environment)}, {"priority", options.priority}};
+    if (!options.bakes.empty()) body["bakes"] = options.bakes;
+    if (!options.replaces.empty()) body["replaces"] = inputs.reference(options.replaces);
+    if (!options.name.empty()) body["name"] = options.name;
+    for (const std::string& model : options.models) body["models"].push_back(inputs.reference(model));
+    if (!options.irradiance.empty()) body["irradiance"] = Json::parse(options.irradiance);
+    return body;
+}
+
+void check(const Options& options) {
+    const int sources =
+        !options.bakes.empty() + !options.replaces.empty() + !options.name.empty() + !options.models.empty();
+    if (sources != 1)
+        throw Error(ErrorKind::usage, "exactly one of --bake, --replaces, --name and --model says what to bake again",
+                    "bakes");
+    if (!options.irradiance.empty() && !Json::parse(options.irradiance, nullptr, false).is_object())
+        throw Error(ErrorKind::usage, "irradiance is " + options.irradiance + "; allowed is a JSON object",
+                    "irradiance");
+    check_ids(options.bakes, "bake");
+}
+
+std::string count_words(const Json& counts) {
+    return std::to_string(counts.at("transmittance").get<std::int64_t>()) + " transmittance and " +
+           std::to_string(counts.at("irradiance").get<std::int64_t>()) + " irradiance stages";
+}
+
+void tell(const Options& options, const Json& answer) {
+    if (options.connection.json()) {
+        Json line{{"event", options.dry_run ? "forecast" : "submitted"}};
+        line.update(answer);
+        return print_line(line.dump(-1, ' ', false, Json::error_handler_t::replace));
+    }
+    const std::string bakes = std::to_string(answer.at("bakes").get<std::int64_t>()) + " bakes";
+    if (options.dry_run)
+        print_line(bakes + ": " + count_words(answer.at("reused_stages")) + " are stored, " +
+                   count_words(answer.at("computed_stages")) + " would be computed");
+    else if (options.wait)
+        say_note("batch " + id_in(answer, "id") + " of " + bakes);
+    else
+        print_line(id_in(answer, "id") + " " + bakes);
+}
+
+void run(Options options) {
+    options.wait = options.wait || !options.folder.empty();
+    check(options);
+    InputFiles inputs;
+    inputs.add(options.environment, "environment");
+    if (!options.replaces.empty()) inputs.add(options.replaces, "replaces");
+    for (const std::string& model : options.models) inputs.add(model, "models");
+    const ServerOptions server_settings = server_options(options.connection);
+    Json answer;
+    run_phase(options.connection, server_settings, {{"digest", 1}, {"upload", 4}}, [&](Server& server) {
+        inputs.send(server);
+        answer = server.json("POST", options.dry_run ? "/v1/rebakes?dry_run=1" : "/v1/rebakes",
+                             body_of(options, inputs).dump());
+        if (!options.dry_run) id_in(answer, "id");
+    });
+    tell(options, answer);
+    if (options.dry_run || !options.wait) return;
+
+    const std::string batch = id_in(answer, "id");
+    Awaited awaited;
+    awaited.which = "--batch " + batch;
+    awaited.wait = [&](Server& server) { return wait_for_batch(server, batch); };
+    awaited.words = [&](std::string text) { return inputs.with_paths(std::move(text)); };
+    if (!options.folder.empty())
+        awaited.folder = [&](const std::string& id) { return (std::filesystem::path(options.folder) / id).string(); };
+    await_bakes(options.connection, server_settings, awaited);
+}
+
+}  // namespace
+
+void add_rebake_command(CLI::App& app, Action& action) {
+    CLI::App* command = app.add_subcommand("rebake", "Bake grooms again on a service under a new environment");
+    const auto options = std::make_shared<Options>();
+    command->add_option("--env", options->environment, "the new environment: a file, sha256:DIGEST or name:NAME")
+        ->required();
+    command->add_option("--bake", options->bakes, "id of a bake to repeat; may be given more than once")
+        ->type_name("ID");
+    command->add_option("--replaces", options->replaces, "every groom that was baked under this environment");
+    command->add_option("--name", options->name, "every groom that was baked under this name of an environment");
+    command->add_option("--model", options->models, "these hair models, as they were baked last");
+    command->add_option("--irradiance", options->irradiance, "fields of the block irradiance that change")
+        ->type_name("JSON");
+    command->add_option("--priority", options->priority, "-10 to 10: higher ones are baked first")
+        ->check(CLI::Range(-10, 10));
+    command->add_flag("--dry-run", options->dry_run, "only tell what is stored and what would be computed");
+    command->add_flag("--wait", options->wait, "until all bakes have ended");
+    command->add_option("--fetch", options->folder, "wait, then fetch each result into DIR/ID")->type_name("DIR");
+    command->footer("Transmittance is not computed again. Prints the batch's id and how many bakes it has.\n\n");
+    add_connection_flags(*command, options->connection);
+    command->callback([options, &action] {
+        action = [options] { with_json_failures(options->connection.progress, [&] { run(*options); }); };
+    });
+}
+
+}  // namespace hairbake

@@ -1,0 +1,128 @@
+// hairbake status, hairbake cancel
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "clients/cli/commands.h"
+#include "clients/cli/remote/outcome.h"
+
+namespace hairbake {
+namespace {
+
+using Json = Server::Json;
+
+struct Options {
+    ConnectionFlags connection;
+    std::vector<std::string> ids;
+    std::string batch, state;
+    bool json = false;
+};
+
+std::string text_in(const Json& view, const char* field) {
+    return view.contains(field) && view[field].is_string() ? plain(view[field].get<std::string>()) : "";
+}
+
+/// "ID running 43 %, 12 s left; hair 0123456789ab, environment stage1/sunset"
+std::string line_of(const Json& view) {
+    const std::string state = text_in(view, "state");
+    std::string line = id_in(view, "id") + " " + state;
+    if (state == "running" && view.contains("fraction"))
+        line += " " + std::to_string(std::lround(100 * view["fraction"].get<double>())) + " %";
+    if (view.contains("seconds_left") && view["seconds_left"].is_number())
+        line += ", " + std::to_string(std::lround(view["seconds_left"].get<double>())) + " s left";
+    for (const auto& [field, name] : {std::pair("model", "hair"), std::pair("environment", "environment")}) {
+        std::string value = text_in(view, field).substr(0, 12);
+        const Json names = view.value("names", Json::object());
+        if (names.contains(name)) value = text_in(names[name], "path");
+        if (!value.empty()) line += std::string("; ") + name + " " + value;
+    }
+    if (view.contains("error") && view["error"].is_object()) line += ": " + text_in(view["error"], "message");
+    return line;
+}
+
+/// "ID: 12 of 40 done, 26 queued, 2 running"
+std::string batch_line(const Json& view) {
+    std::string line = id_in(view, "id") + ":";
+    for (const auto& [state, count] : view.at("states").items())
+        if (count.get<std::int64_t>() > 0)
+            line += (line.ends_with(":") ? " " : ", ") + std::to_string(count.get<std::int64_t>()) + " " + plain(state);
+    return line;
+}
+
+std::vector<Json> views(Server& server, const Options& options) {
+    std::vector<Json> found;
+    if (!options.batch.empty()) found.push_back(server.json("GET", "/v1/batches/" + options.batch));
+    for (const std::string& id : options.ids) found.push_back(server.json("GET", "/v1/bakes/" + id));
+    if (!found.empty()) return found;
+    const Json page =
+        server.json("GET", "/v1/bakes?limit=20" + (options.state.empty() ? "" : "&state=" + options.state));
+    for (const Json& view : page.at("bakes")) found.push_back(view);
+    return found;
+}
+
+void run_status(const Options& options) {
+    check_ids(options.ids, "id");
+    if (!options.batch.empty()) check_ids({options.batch}, "batch");
+    std::vector<std::string> lines;
+    run_phase(options.connection, server_options(options.connection), {}, [&](Server& server) {
+        for (const Json& view : views(server, options))
+            lines.push_back(options.json || options.connection.json()
+                                ? view.dump(-1, ' ', false, Json::error_handler_t::replace)
+                            : view.contains("states") ? batch_line(view)
+                                                      : line_of(view));
+    });
+    for (const std::string& line : lines) print_line(line);
+}
+
+/// Cancelled already is as good.
+void cancel(Server& server, const std::string& id) {
+    const HttpAnswer answer = server.ask({.method = "DELETE", .path = "/v1/bakes/" + id});
+    if (answer.status == 409 && server.json("GET", "/v1/bakes/" + id).at("state") == "cancelled") return;
+    if (answer.status != 200) refuse(answer);
+}
+
+void run_cancel(const Options& options) {
+    check_ids(options.ids, "id");
+    if (!options.batch.empty()) check_ids({options.batch}, "batch");
+    if (options.ids.empty() == options.batch.empty())
+        throw Error(ErrorKind::usage, "cancel needs ids of bakes, or --batch", "id");
+    std::vector<std::string> ids = options.ids;
+    run_phase(options.connection, server_options(options.connection), {}, [&](Server& server) {
+        for (const char* state : {"queued", "running"})
+            if (!options.batch.empty())
+                for (std::string& id : bakes_of_batch(server, options.batch, state)) ids.push_back(std::move(id));
+        for (const std::string& id : ids) cancel(server, id);
+    });
+    for (const std::string& id : ids)
+        print_line(options.connection.json() ? R"({"event":"cancelled","id":)" + json_string(id) + "}"
+                                             : id + " cancelled");
+}
+
+}  // namespace
+
+void add_status_command(CLI::App& app, Action& action) {
+    CLI::App* command = app.add_subcommand("status", "Tell how bakes on a service are doing");
+    const auto options = std::make_shared<Options>();
+    command->add_option("id", options->ids, "of bakes; without: the 20 newest")->type_name("ID");
+    command->add_option("--batch", options->batch, "counts of a batch, as rebake prints it")->type_name("ID");
+    command->add_option("--state", options->state, "of the newest, only those that are so")
+        ->check(CLI::IsMember({"queued", "running", "done", "failed", "cancelled"}));
+    command->add_flag("--json", options->json, "the server's words, one object a line");
+    add_connection_flags(*command, options->connection);
+    command->callback([options, &action] {
+        action = [options] { with_json_failures(options->connection.progress, [&] { run_status(*options); }); };
+    });
+}
+
+void add_cancel_command(CLI::App& app, Action& action) {
+    CLI::App* command = app.add_subcommand("cancel", "Cancel bakes on a service");
+    const auto options = std::make_shared<Options>();
+    command->add_option("id", options->ids, "of bakes, as submit prints them")->type_name("ID");
+    command->add_option("--batch", options->batch, "what has not ended of a batch")->type_name("ID");
+    add_connection_flags(*command, options->connection);
+    command->callback([options, &action] {
+        action = [options] { with_json_failures(options->connection.progress, [&] { run_cancel(*options); }); };
+    });
+}
+
+}  // namespace hairbake

@@ -1,0 +1,135 @@
+// hairbake submit
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "clients/cli/commands.h"
+#include "clients/cli/messages.h"
+#include "clients/cli/remote/outcome.h"
+#include "clients/cli/remote/upload.h"
+#include "clients/cli/request_flags.h"
+#include "core/bake.h"
+#include "core/request_json.h"
+
+namespace hairbake {
+namespace {
+
+using Json = Server::Json;
+
+struct Options {
+    RequestFlags request;
+    ConnectionFlags connection;
+    std::vector<std::string> hairs;
+    int priority = 0;
+    bool wait = false;
+    std::string folder;
+};
+
+/// A request, what people call it, where its result goes and what became of it.
+struct Job {
+    BakeRequest request;
+    std::string label, folder, id, state;
+};
+
+/// "groom" of a path or a name, the first digits of a digest.
+std::string short_name(const std::string& hair) {
+    if (hair.starts_with("sha256:")) return hair.substr(7, 12);
+    return std::filesystem::path(hair.starts_with("name:") ? hair.substr(5) : hair).stem();
+}
+
+std::vector<Job> make_jobs(const Options& options) {
+    std::vector<Job> jobs;
+    std::map<std::string, std::string> folders;
+    for (std::size_t i = 0; i == 0 || i < options.hairs.size(); ++i) {
+        RequestFlags flags = options.request;
+        if (!options.hairs.empty()) flags.hair = options.hairs[i];
+        Job job{make_request(flags), "", options.folder, "", ""};
+        job.label = job.request.hair.value_or(job.request.environment.value_or(""));
+        if (!job.folder.empty() && options.hairs.size() > 1) {
+            job.folder = std::filesystem::path(options.folder) / short_name(job.label);
+            const auto [other, fresh] = folders.emplace(job.folder, job.label);
+            if (!fresh)
+                throw Error(ErrorKind::usage,
+                            other->second + " and " + job.label + " would both be fetched into " + job.folder, "fetch");
+        }
+        if (!job.folder.empty()) check_result_folder(job.folder);
+        jobs.push_back(std::move(job));
+    }
+    return jobs;
+}
+
+void submit(Server& server, const InputFiles& inputs, Job& job, int priority) {
+    Json body = Json::parse(to_json(inputs.referenced(job.request)));
+    body["priority"] = priority;
+    const Json answer = server.json("POST", "/v1/bakes", body.dump());
+    job.id = id_in(answer, "id");
+    job.state = plain(answer.at("state").get<std::string>());
+}
+
+void tell_submitted(const Options& options, const Job& job) {
+    if (options.connection.json())
+        print_line(Json{{"event", "submitted"}, {"id", job.id}, {"state", job.state}, {"input", job.label}}.dump(
+            -1, ' ', false, Json::error_handler_t::replace));
+    else if (options.wait)
+        say_note("bake " + job.id + " of " + job.label + " is " + job.state);
+    else
+        print_line(job.id + " " + job.state + " " + job.label);
+}
+
+void run(Options options) {
+    options.wait = options.wait || !options.folder.empty();
+    std::vector<Job> jobs = make_jobs(options);
+    InputFiles inputs;
+    for (const Job& job : jobs) inputs.add(job.request);
+    const ServerOptions server_settings = server_options(options.connection);
+    run_phase(options.connection, server_settings, {{"digest", 1}, {"upload", 4}}, [&](Server& server) {
+        inputs.send(server);
+        for (Job& job : jobs) submit(server, inputs, job, options.priority);
+    });
+    for (const Job& job : jobs) tell_submitted(options, job);
+    if (!options.wait) return;
+
+    std::vector<std::string> ids;
+    std::map<std::string, std::string> folders;
+    Awaited awaited;
+    for (const Job& job : jobs) {
+        if (folders.emplace(job.id, job.folder).second) ids.push_back(job.id);
+        awaited.which += (awaited.which.empty() ? "" : " ") + job.id;
+    }
+    awaited.wait = [&](Server& server) { return wait_for_bakes(server, ids); };
+    awaited.folder = [&](const std::string& id) {
+        const auto found = folders.find(id);
+        return found == folders.end() ? "" : found->second;
+    };
+    awaited.words = [&](std::string text) { return inputs.with_paths(std::move(text)); };
+    awaited.remark = "; " + std::to_string(inputs.sent_files()) + " files sent, " + in_megabytes(inputs.sent_bytes());
+    await_bakes(options.connection, server_settings, awaited);
+}
+
+}  // namespace
+
+void add_submit_command(CLI::App& app, Action& action) {
+    CLI::App* command = app.add_subcommand("submit", "Have a service bake what `bake` would bake here");
+    const auto options = std::make_shared<Options>();
+    command
+        ->add_option("--hair", options->hairs,
+                     "hair model; several make a bake each. Every input is a file, sha256:DIGEST or name:NAME")
+        ->allow_extra_args(false);
+    add_request_flags(*command, options->request);
+    command->add_option("--priority", options->priority, "-10 to 10: higher ones are baked first")
+        ->check(CLI::Range(-10, 10));
+    command->add_flag("--wait", options->wait, "until the bake has ended");
+    command
+        ->add_option("--fetch", options->folder,
+                     "wait, then fetch the result into this folder; of several: into DIR/NAME OF THE HAIR")
+        ->type_name("DIR");
+    command->footer(request_flags_help() +
+                    "Without --wait it prints one line for each bake: its id, its state, its hair.\n\n");
+    add_connection_flags(*command, options->connection);
+    command->callback([options, &action] {
+        action = [options] { with_json_failures(options->connection.progress, [&] { run(*options); }); };
+    });
+}
+
+}  // namespace hairbake

@@ -1,0 +1,75 @@
+// hairbake wait, hairbake fetch
+#include <CLI/CLI.hpp>
+
+#include "clients/cli/commands.h"
+#include "clients/cli/remote/fetch.h"
+#include "clients/cli/remote/outcome.h"
+#include "core/bake.h"
+
+namespace hairbake {
+namespace {
+
+struct WaitOptions {
+    ConnectionFlags connection;
+    std::vector<std::string> ids;
+    std::string batch;
+};
+
+void run_wait(const WaitOptions& options) {
+    check_ids(options.ids, "id");
+    if (!options.batch.empty()) check_ids({options.batch}, "batch");
+    if (options.ids.empty() == options.batch.empty())
+        throw Error(ErrorKind::usage, "wait needs ids of bakes, or --batch", "id");
+    Awaited awaited;
+    awaited.which = options.batch.empty() ? "" : "--batch " + options.batch;
+    for (const std::string& id : options.ids) awaited.which += (awaited.which.empty() ? "" : " ") + id;
+    awaited.wait = [&](Server& server) {
+        return options.batch.empty() ? wait_for_bakes(server, options.ids) : wait_for_batch(server, options.batch);
+    };
+    await_bakes(options.connection, server_options(options.connection), awaited);
+}
+
+struct FetchOptions {
+    ConnectionFlags connection;
+    std::string id, folder;
+};
+
+void run_fetch(const FetchOptions& options) {
+    check_ids({options.id}, "id");
+    check_result_folder(options.folder);
+    Fetched fetched;
+    run_phase(options.connection, server_options(options.connection), {{"fetch", 1}},
+              [&](Server& server) { fetched = fetch_result(server, options.id, options.folder); });
+    if (options.connection.json())
+        print_line("{\"event\":\"done\",\"id\":" + json_string(options.id) + ",\"folder\":" +
+                   json_string(options.folder) + ",\"received_bytes\":" + std::to_string(fetched.received) + "}");
+    else
+        print_line(options.folder + ": " + std::to_string(fetched.files) + " files, " + in_megabytes(fetched.bytes) +
+                   ", " + in_megabytes(fetched.received) + " of it received");
+}
+
+}  // namespace
+
+void add_wait_command(CLI::App& app, Action& action) {
+    CLI::App* command = app.add_subcommand("wait", "Wait until bakes on a service have ended");
+    const auto options = std::make_shared<WaitOptions>();
+    command->add_option("id", options->ids, "of bakes, as submit prints them")->type_name("ID");
+    command->add_option("--batch", options->batch, "all bakes of a batch, as rebake prints it")->type_name("ID");
+    add_connection_flags(*command, options->connection);
+    command->callback([options, &action] {
+        action = [options] { with_json_failures(options->connection.progress, [&] { run_wait(*options); }); };
+    });
+}
+
+void add_fetch_command(CLI::App& app, Action& action) {
+    CLI::App* command = app.add_subcommand("fetch", "Fetch the result of a bake that is done");
+    const auto options = std::make_shared<FetchOptions>();
+    command->add_option("id", options->id, "of the bake")->required()->type_name("ID");
+    command->add_option("--out", options->folder, "result folder: new, empty or an earlier result")->required();
+    add_connection_flags(*command, options->connection);
+    command->callback([options, &action] {
+        action = [options] { with_json_failures(options->connection.progress, [&] { run_fetch(*options); }); };
+    });
+}
+
+}  // namespace hairbake

@@ -1,0 +1,93 @@
+#include "clients/cli/request_flags.h"
+
+#include <CLI/CLI.hpp>
+#include <fstream>
+
+#include "core/request_json.h"
+#include "core/request_presets.h"
+
+namespace hairbake {
+namespace {
+
+/// A flag and the request field that it sets.
+struct FieldFlag {
+    const char* flag;
+    std::vector<const char*> paths;
+    const char* help;
+};
+
+const std::vector<FieldFlag>& field_flags() {
+    static const std::vector<FieldFlag> flags{
+        {"--directions", {"transmittance.directions"}, "directions of the transmittance, 1 to 4096"},
+        {"--voxels", {"transmittance.voxels"}, "voxels on the longest axis, 32 to 1024"},
+        {"--width", {"strand.width"}, "strand diameter in the model's unit, instead of the file's"},
+        {"--opacity", {"strand.opacity"}, "share of light that one crossing stops, 0 to 1, or from_file"},
+        {"--specular-maps", {"irradiance.specular_maps"}, "number of specular maps, 2 to 257"},
+        {"--exponent", {"irradiance.exponent"}, "Kajiya-Kay exponent, 0 to 4096"},
+        {"--face-size", {"irradiance.face_size"}, "texels per edge of a cube face, 4 to 256"},
+        {"--method", {"irradiance.method"}, "irradiance by exact or sh"},
+        {"--sh-bands",
+         {"irradiance.sh_bands.diffuse", "irradiance.sh_bands.specular"},
+         "bands of sh: a number or auto"},
+        {"--layout", {"irradiance.layout"}, "of the environment: auto, latlong, faces, horizontal_cross ..."},
+        {"--outputs", {"outputs"}, "files beside the manifest, of npy,exr,hair,ktx2,dds,raw,glb,vdb"},
+    };
+    return flags;
+}
+
+std::string text_of(const std::string& file) {
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw Error(ErrorKind::bad_input, file + ": " + std::generic_category().message(errno), "request");
+    constexpr std::size_t most = 1 << 20;
+    std::string text(most + 1, '\0');
+    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > most) throw Error(ErrorKind::usage, file + " is longer than a request may be (1 MiB)", "request");
+    return text;
+}
+
+}  // namespace
+
+void add_request_flags(CLI::App& command, RequestFlags& flags) {
+    command.add_option(
+        "--env", flags.environment,
+        "HDR environment: a picture, or a cube's six as a folder or sky_{face}.hdr; alone: irradiance maps only");
+    command.add_option("--occluder", flags.occluder, "mesh (OBJ) that stops light completely: the head");
+    command.add_option("--receiver", flags.receiver, "mesh (OBJ) that the hair's shadow is baked on as well");
+    command.add_option("--preset", flags.preset, "draft, final or paper (see hairbake presets)");
+    command.add_option("--request", flags.request_file, "JSON file with fields of the request");
+    for (const FieldFlag& flag : field_flags())
+        command
+            .add_option_function<std::string>(
+                flag.flag, [&flags, name = flag.flag](const std::string& value) { flags.fields[name] = value; },
+                flag.help)
+            ->type_name("VALUE");
+    command.add_option("--set", flags.settings, "any field by its path, e.g. transmittance.method=trace")
+        ->type_name("PATH=VALUE")
+        ->allow_extra_args(false);
+}
+
+std::string request_flags_help() { return "Later wins: defaults, --preset, --request, flags, --set.\n"; }
+
+BakeRequest make_request(const RequestFlags& flags) {
+    BakeRequest request;
+    if (flags.preset) apply_preset(request, *flags.preset);
+    if (flags.request_file) merge_json(request, text_of(*flags.request_file), *flags.request_file);
+    if (flags.hair) request.hair = flags.hair;
+    if (flags.environment) request.environment = flags.environment;
+    if (flags.occluder) request.occluder = flags.occluder;
+    if (flags.receiver) request.receiver = flags.receiver;
+    for (const FieldFlag& flag : field_flags())
+        if (const auto value = flags.fields.find(flag.flag); value != flags.fields.end())
+            for (const char* path : flag.paths) set_field(request, path, value->second);
+    for (const std::string& setting : flags.settings) {
+        const std::size_t sign = setting.find('=');
+        if (sign == std::string::npos)
+            throw Error(ErrorKind::usage, "--set " + setting + " is not of the form path=value", "set");
+        set_field(request, setting.substr(0, sign), setting.substr(sign + 1));
+    }
+    validate(request);
+    return request;
+}
+
+}  // namespace hairbake

@@ -1,0 +1,278 @@
+"""python3 -m hairbake: the commands of the program hairbake that talk to a service, where there is only Python."""
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import signal
+import sys
+from pathlib import Path
+from typing import Any, Callable, Dict, List, Optional
+
+from ._client import Bake, Client
+from ._errors import BakeCancelled, BakeFailed, HairbakeError, UsageError
+from ._fetch import check_result_folder
+from ._http import identifier
+
+EPILOG = """exit codes: 0 done, 2 usage, 3 bad input, 5 interrupted (the bake goes on on the server), 6 server unreachable,
+7 refused, 8 bake failed, 9 bake cancelled on the server"""
+Arguments = argparse.Namespace
+
+
+class Display:
+    """A bar on a terminal, JSON lines, or nothing."""
+
+    def __init__(self, mode: str) -> None:
+        self.json, self.bar = mode == "json", mode == "auto" and sys.stderr.isatty()
+
+    def __call__(self, stage: str, fraction: float) -> None:
+        if self.json:
+            self.event("progress", stage=stage, stage_fraction=round(fraction, 4))
+        elif self.bar:
+            filled = round(32 * min(1.0, fraction))
+            print(f"\r[{'#' * filled}{'.' * (32 - filled)}] {100 * fraction:3.0f} %  {stage}\033[K", end="", file=sys.stderr)
+
+    def event(self, event: str, **facts: Any) -> None:
+        print(json.dumps({"event": event, **facts}), flush=True)
+
+    def line(self, text: str, event: str, **facts: Any) -> None:
+        """`text` for people, or the event."""
+        if self.bar:
+            print("\r\033[K", end="", file=sys.stderr, flush=True)
+        if self.json:
+            self.event(event, **facts)
+        else:
+            print(text, flush=True)
+
+
+def set_field(request: Dict[str, Any], setting: str) -> None:
+    path, sign, value = setting.partition("=")
+    if not sign:
+        raise UsageError(f"--set {setting} is not of the form path=value", "set")
+    try:
+        parsed = json.loads(value)
+    except ValueError:
+        parsed = value
+    *blocks, last = path.split(".")
+    for block in blocks:
+        request = request.setdefault(block, {})
+        if not isinstance(request, dict):
+            raise UsageError(f"--set {setting}: {block} is no block of the request", "set")
+    request[last] = parsed
+
+
+def make_request(arguments: Arguments) -> Dict[str, Any]:
+    """The request file, then the flags, then --set: what comes later wins."""
+    request: Dict[str, Any] = {}
+    if arguments.request:
+        try:
+            request = json.loads(Path(arguments.request).read_text(encoding="utf-8"))
+        except (OSError, ValueError) as error:
+            raise HairbakeError(f"{arguments.request}: {error}", "request") from error
+        if not isinstance(request, dict):
+            raise UsageError(f"{arguments.request} holds no JSON object", "request")
+    for field in ("environment", "occluder", "receiver"):
+        if getattr(arguments, field):
+            request[field] = getattr(arguments, field)
+    if arguments.outputs:
+        request["outputs"] = arguments.outputs.split(",")
+    for setting in arguments.set:
+        set_field(request, setting)
+    return {name: value for name, value in request.items() if value is not None}
+
+
+def short_name(hair: str) -> str:
+    return hair[7:19] if hair.startswith("sha256:") else Path(hair[5:] if hair.startswith("name:") else hair).stem
+
+
+def tell_ended(client: Client, display: Display, bakes: List[Bake], folder_of: Callable[[str], Optional[Path]]) -> None:
+    """Fetches what is done, one line each; raises when some are not done."""
+    lost = [bake for bake in bakes if bake.state != "done"]
+    for bake in bakes:
+        reason = client.with_paths(bake.message)
+        folder = folder_of(bake.id)
+        if bake.state != "done":
+            display.line(f"{bake.id} {bake.state} {reason}".rstrip(), bake.state, id=bake.id, message=reason)
+        elif folder:
+            result = client.fetch(bake, folder)
+            display.line(f"{bake.id} done; {folder}: {result.received} bytes received", "done", id=bake.id,
+                         folder=str(folder), received_bytes=result.received)
+        else:
+            display.line(f"{bake.id} done", "done", id=bake.id)
+    if lost:
+        failed = [bake for bake in lost if bake.state == "failed"]
+        words = f"{len(lost)} of {len(bakes)} bakes " + ("failed: " if failed else "were cancelled")
+        raise (BakeFailed if failed else BakeCancelled)(words + (client.with_paths(failed[0].message) if failed else ""))
+
+
+def wait_for(client: Client, which: List[str], wait: Callable[[], List[Bake]], server: str) -> List[Bake]:
+    """When it is interrupted, it says how to go on."""
+    try:
+        return wait()
+    except KeyboardInterrupt:
+        rest = " ".join([*which, "--server", server])
+        print(f'\nhairbake: the server goes on baking; "python3 -m hairbake wait {rest}" waits again. '
+              f'"python3 -m hairbake cancel {rest}" cancels it.', file=sys.stderr)
+        raise
+
+
+def submit(client: Client, arguments: Arguments, display: Display) -> None:
+    request = make_request(arguments)
+    hairs: List[Optional[str]] = arguments.hair or [request.pop("hair", None)]
+    request.pop("hair", None)
+    names = [short_name(hair) for hair in hairs if hair]
+    if arguments.fetch and len(hairs) > 1 and len(set(names)) < len(names):
+        raise UsageError("two results would be fetched into the same folder", "fetch")
+    targets = [Path(arguments.fetch, name) if len(hairs) > 1 else Path(arguments.fetch)
+               for name in names or [""]] if arguments.fetch else []
+    for target in targets:
+        check_result_folder(target)
+    bakes = [client.submit(hair, priority=arguments.priority, **request) for hair in hairs]
+    for hair, bake in zip(hairs, bakes):
+        if not (arguments.wait or targets) or display.json:
+            display.line(f"{bake.id} {bake.state} {hair or ''}".rstrip(), "submitted", id=bake.id, state=bake.state)
+    if arguments.wait or targets:
+        folders = dict(zip([bake.id for bake in bakes], targets))
+        ended = wait_for(client, list(dict.fromkeys(bake.id for bake in bakes)), lambda: client.wait_ended(bakes),
+                         arguments.server)
+        tell_ended(client, display, ended, folders.get)
+
+
+def status(client: Client, arguments: Arguments, display: Display) -> None:
+    for bake in [client.status(id) for id in arguments.id] or client.list()[:20]:
+        fraction = bake.view.get("fraction")
+        percent = f" {100 * fraction:.0f} %" if bake.state == "running" and isinstance(fraction, (int, float)) else ""
+        display.line(f"{bake.id} {bake.state}{percent} {bake.message}".rstrip(), "status", bake=bake.view)
+
+
+def wait(client: Client, arguments: Arguments, display: Display) -> None:
+    if bool(arguments.id) == bool(arguments.batch):
+        raise UsageError("wait needs ids of bakes, or --batch")
+    which = arguments.id or ["--batch", arguments.batch]
+    ended = wait_for(client, which, lambda: client.wait_ended(arguments.id) if arguments.id
+                     else client.wait_batch(arguments.batch), arguments.server)
+    tell_ended(client, display, ended, lambda bake: None)
+
+
+def fetch(client: Client, arguments: Arguments, display: Display) -> None:
+    result = client.fetch(arguments.id, arguments.out)
+    display.line(f"{arguments.out}: {result.received} bytes received", "done", id=arguments.id, folder=arguments.out,
+                 received_bytes=result.received)
+
+
+def cancel(client: Client, arguments: Arguments, display: Display) -> None:
+    if bool(arguments.id) == bool(arguments.batch):
+        raise UsageError("cancel needs ids of bakes, or --batch")
+    ids = arguments.id or [bake.id for state in ("queued", "running")
+                           for bake in client.list(batch=identifier(arguments.batch), state=state)]
+    for bake in ids:
+        client.cancel(bake)
+        display.line(f"{bake} cancelled", "cancelled", id=bake)
+
+
+def rebake(client: Client, arguments: Arguments, display: Display) -> None:
+    which: Dict[str, Any] = {"bakes": arguments.bake, "replaces": arguments.replaces, "name": arguments.name,
+                             "models": arguments.model}
+    which = {name: value for name, value in which.items() if value}
+    if len(which) != 1:
+        raise UsageError("exactly one of --bake, --replaces, --name and --model says what to bake again", "bakes")
+    if arguments.irradiance:
+        which["irradiance"] = json.loads(arguments.irradiance)
+    if arguments.dry_run:
+        forecast = client.rebake_forecast(arguments.environment, **which)
+        return display.line(json.dumps(forecast), "forecast", **forecast)
+    batch = client.rebake(arguments.environment, priority=arguments.priority, **which)
+    waiting = arguments.wait or arguments.fetch
+    if not waiting or display.json:
+        display.line(f"{batch.id} {batch.bakes} bakes", "submitted", id=batch.id, bakes=batch.bakes)
+    if waiting:
+        ended = wait_for(client, ["--batch", batch.id], lambda: client.wait_batch(batch), arguments.server)
+        tell_ended(client, display, ended, lambda bake: Path(arguments.fetch, bake) if arguments.fetch else None)
+
+
+def upload(client: Client, arguments: Arguments, display: Display) -> None:
+    if arguments.name and (len(arguments.file) != 1 or not arguments.kind):
+        raise UsageError("--name goes with one file and --as", "name")
+    for file in arguments.file:
+        reference = client.upload(file, arguments.kind, arguments.name, arguments.note)
+        display.line(f"{reference} {file}", "stored", file=file, reference=reference)
+
+
+def parser() -> argparse.ArgumentParser:
+    common = argparse.ArgumentParser(add_help=False)
+    common.add_argument("--server", default=os.environ.get("HAIRBAKE_SERVER"), help="http://HOST:PORT (HAIRBAKE_SERVER)")
+    common.add_argument("--token-file", default=os.environ.get("HAIRBAKE_TOKEN_FILE"), help="(HAIRBAKE_TOKEN_FILE)")
+    common.add_argument("--ca-file", help="certificates (PEM) to trust instead of the system's")
+    common.add_argument("--patience", type=float, default=120, help="seconds to go on trying; default 120")
+    common.add_argument("--progress", choices=("auto", "json", "none"), default="auto")
+    priority = argparse.ArgumentParser(add_help=False)
+    priority.add_argument("--priority", type=int, default=0, help="-10 to 10: higher ones are baked first")
+    priority.add_argument("--wait", action="store_true", help="until the bakes have ended")
+    priority.add_argument("--fetch", metavar="DIR", help="wait, then fetch; of several: into a folder each in DIR")
+    main_parser = argparse.ArgumentParser(prog="python3 -m hairbake", description=__doc__, epilog=EPILOG)
+    commands = main_parser.add_subparsers(dest="command", required=True)
+
+    def command(run: Callable[[Client, Arguments, Display], None], words: str,
+                *parents: argparse.ArgumentParser) -> argparse.ArgumentParser:
+        made = commands.add_parser(run.__name__, help=words, description=words, parents=[common, *parents], epilog=EPILOG)
+        made.set_defaults(run=run)
+        return made
+
+    made = command(submit, "ask for bakes; inputs are files, sha256:DIGEST or name:NAME", priority)
+    made.add_argument("--hair", action="append", help="may be given more than once: a bake each")
+    made.add_argument("--env", dest="environment")
+    made.add_argument("--occluder")
+    made.add_argument("--receiver")
+    made.add_argument("--request", metavar="FILE", help="JSON fields of the request, e.g. of hairbake presets NAME")
+    made.add_argument("--outputs", help="npy,exr,hair ...")
+    made.add_argument("--set", action="append", default=[], metavar="PATH=VALUE", help="e.g. transmittance.method=trace")
+    command(status, "tell how bakes are doing").add_argument("id", nargs="*")
+    for run, words in ((wait, "wait until bakes have ended"), (cancel, "cancel bakes")):
+        made = command(run, words)
+        made.add_argument("id", nargs="*")
+        made.add_argument("--batch")
+    made = command(fetch, "fetch the result of a bake that is done")
+    made.add_argument("id")
+    made.add_argument("--out", required=True)
+    made = command(rebake, "bake grooms again under a new environment", priority)
+    made.add_argument("--env", dest="environment", required=True)
+    made.add_argument("--bake", action="append")
+    made.add_argument("--replaces")
+    made.add_argument("--name")
+    made.add_argument("--model", action="append")
+    made.add_argument("--irradiance", metavar="JSON")
+    made.add_argument("--dry-run", action="store_true")
+    made = command(upload, "send files that the server lacks")
+    made.add_argument("file", nargs="+")
+    made.add_argument("--as", dest="kind", choices=("model", "environment", "mesh"), default="")
+    made.add_argument("--name", default="")
+    made.add_argument("--note", default="")
+    return main_parser
+
+
+def interrupt(*_: object) -> None:
+    raise KeyboardInterrupt
+
+
+def main(words: Optional[List[str]] = None) -> int:
+    arguments = parser().parse_args(words)
+    display = Display(arguments.progress)
+    signal.signal(signal.SIGTERM, interrupt)
+    try:
+        if not arguments.server:
+            raise UsageError("--server or HAIRBAKE_SERVER is needed", "server")
+        client = Client(arguments.server, token_file=arguments.token_file, ca_file=arguments.ca_file,
+                        patience_s=arguments.patience, progress=display)
+        arguments.run(client, arguments, display)
+        return 0
+    except HairbakeError as error:
+        if display.json:
+            display.event("error", kind=error.kind, field=error.field, message=str(error))
+        print(f"hairbake: error: {error}", file=sys.stderr)
+        return error.exit_code
+    except KeyboardInterrupt:
+        return 5
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,258 @@
+"""The client: what a pipeline script calls."""
+from __future__ import annotations
+
+import os
+import re
+import stat
+import sys
+import time
+from pathlib import Path
+from typing import Any, Callable, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Union
+
+from ._errors import BakeCancelled, BakeFailed, HairbakeError, Refused, UsageError, plain
+from ._fetch import Result, fetch_result
+from ._http import Http, Json, identifier
+from ._upload import send_if_lacking
+
+PathLike = Union[str, "os.PathLike[str]"]
+Progress = Callable[[str, float], None]  #: stage ("upload", "bake", "fetch") and its fraction
+ENDED = ("done", "failed", "cancelled")
+FIRST_POLL_S, LONGEST_POLL_S = 0.1, 2.0
+REFERENCE = re.compile(r"(name|sha256):")
+
+
+class Bake(NamedTuple):
+    """A bake as the server last told. `view` is its whole answer."""
+
+    id: str
+    state: str  #: "queued", "running", "done", "failed" or "cancelled"
+    view: Json
+
+    @property
+    def message(self) -> str:
+        """Why it failed, or empty."""
+        error = self.view.get("error")
+        return plain(error.get("message", "")) if isinstance(error, dict) else ""
+
+    @property
+    def field(self) -> str:
+        """The request's field at fault, or empty."""
+        error = self.view.get("error")
+        return plain(error.get("field", "")) if isinstance(error, dict) else ""
+
+
+class Batch(NamedTuple):
+    """Bakes that a re-bake made."""
+
+    id: str
+    bakes: int
+    states: Dict[str, int]  #: how many are in which state
+
+
+BakeOrId = Union[Bake, str]
+
+
+def read_token(file: PathLike) -> str:
+    """Warns when everybody on this machine can read the file."""
+    path = Path(file)
+    try:
+        token = path.read_text(encoding="ascii", errors="replace").strip()
+        if path.stat().st_mode & stat.S_IROTH:
+            print(f"hairbake: warning: {path} can be read by everybody on this machine", file=sys.stderr)
+    except OSError as error:
+        raise HairbakeError(f"{path}: {error.strerror or error}", "token-file") from error
+    if not re.fullmatch(r"[!-~]{1,4096}", token):
+        raise HairbakeError(f"{path} is not a token: one word of printable characters", "token-file")
+    return token
+
+
+def _bake(view: Json) -> Bake:
+    return Bake(identifier(view.get("id")), str(view.get("state")), view)
+
+
+def _batch(view: Json) -> Batch:
+    states, bakes = view.get("states"), view.get("bakes")
+    if not isinstance(states, dict) or not isinstance(bakes, int):
+        raise Refused("the server's answer is no batch")
+    return Batch(identifier(view.get("id")), bakes, {str(name): int(count) for name, count in states.items()})
+
+
+def _id(bake: BakeOrId) -> str:
+    return bake.id if isinstance(bake, Bake) else identifier(bake)
+
+
+class Client:
+    """Talks to one service. `token_file` or `token` where it wants one; `patience_s` is how long to go on trying while it
+    cannot be reached (a restart, for example); `ca_file` (PEM) replaces the system's certificates; `progress` is told the
+    stage and its fraction. Inputs are paths, "sha256:DIGEST" or "name:NAME". Every method raises HairbakeError: Unreachable,
+    Refused (with the field at fault), or the class itself for a local file. Not thread-safe."""
+
+    def __init__(self, server: str, token: str = "", token_file: Optional[PathLike] = None, ca_file: Optional[str] = None,
+                 patience_s: float = 120, progress: Optional[Progress] = None) -> None:
+        self._http = Http(server, read_token(token_file) if token_file else token, ca_file, patience_s)
+        self._progress: Progress = progress or (lambda stage, fraction: None)
+        self._paths: Dict[str, str] = {}  # references of files that were sent
+
+    def upload(self, file: PathLike, kind: str = "", name: str = "", note: str = "") -> str:
+        """Sends the file when the server lacks it and returns "sha256:DIGEST". With `kind` "model" or "environment" the
+        server reads and lists it; `name` ("stage1/sunset", with a kind, also "mesh") then means this file."""
+        path = Path(file)
+        try:
+            size = max(1, path.stat().st_size)
+        except OSError as error:
+            raise HairbakeError(f"{path}: {error.strerror or error}") from error
+        reference = send_if_lacking(self._http, path, lambda done: self._progress("upload", done / size))
+        self._paths[reference] = str(path)
+        digest = {"sha256": reference.split(":")[1]}
+        if kind in ("model", "environment"):
+            self._http.json("POST", f"/v1/{kind}s", digest)
+        if name:
+            if kind not in ("model", "environment", "mesh") or not re.fullmatch(r"[0-9A-Za-z._/-]{1,512}", name):
+                raise UsageError(f"name is {name!r}; allowed are letters, digits and . _ - / with a kind", "name")
+            self._http.json("PUT", f"/v1/names/{kind}/{name}", {**digest, "note": note})
+        return reference
+
+    def submit(self, hair: Optional[PathLike] = None, environment: Optional[PathLike] = None, *,
+               occluder: Optional[PathLike] = None, receiver: Optional[PathLike] = None, priority: int = 0,
+               **fields: Any) -> Bake:
+        """Asks for a bake; a request that was baked before is done at once. `fields` are the other blocks of the request:
+        strand={...}, transmittance={...}, irradiance={...}, outputs=[...]."""
+        request: Json = {**fields, "priority": priority}
+        for field, value in (("hair", hair), ("environment", environment), ("occluder", occluder), ("receiver", receiver)):
+            if value is not None:
+                request[field] = self._reference(value)
+        return _bake(self._http.json("POST", "/v1/bakes", request))
+
+    def status(self, bake: BakeOrId) -> Bake:
+        return _bake(self._http.json("GET", f"/v1/bakes/{_id(bake)}"))
+
+    def list(self, **filters: str) -> List[Bake]:
+        """All bakes of the filters state, model, environment, name and batch, newest first."""
+        query = "&".join(f"{name}={_plain_filter(value)}" for name, value in filters.items())
+        bakes: List[Bake] = []
+        cursor = ""
+        while True:
+            page = self._http.json("GET", f"/v1/bakes?limit=1000&{query}{cursor}")
+            bakes += [_bake(view) for view in page.get("bakes", [])]
+            if page.get("next") is None:
+                return bakes
+            cursor = f"&cursor={identifier(page['next'], 'cursor')}"
+
+    def wait(self, bake: BakeOrId) -> Bake:
+        """Until the bake has ended. Raises BakeFailed with the reason, BakeCancelled."""
+        return self.wait_all([bake])[0]
+
+    def wait_all(self, bakes: Iterable[BakeOrId]) -> List[Bake]:
+        """Until all have ended; raises for the first that is not done."""
+        ended = self.wait_ended(bakes)
+        for bake in ended:
+            if bake.state != "done":
+                words = f"bake {bake.id} " + ("failed" if bake.state == "failed" else "was cancelled")
+                reason = self.with_paths(f"{words}: {bake.message}" if bake.message else words)
+                raise (BakeFailed if bake.state == "failed" else BakeCancelled)(reason, bake.field)
+        return ended
+
+    def wait_ended(self, bakes: Iterable[BakeOrId]) -> List[Bake]:
+        """Until all have ended, however."""
+        ids = [_id(bake) for bake in bakes]
+        ended: Dict[str, Bake] = {}
+        tags: Dict[str, str] = {}
+        pause = FIRST_POLL_S
+        while True:
+            fractions = 0.0
+            for bake in ids:
+                if bake not in ended:
+                    view = self._poll(bake, tags)
+                    if view and view.state in ENDED:
+                        ended[bake] = view
+                    elif view:
+                        fractions += float(view.view.get("fraction") or 0)
+            self._progress("bake", (len(ended) + fractions) / max(1, len(set(ids))))
+            if len(ended) == len(set(ids)):
+                return [ended[bake] for bake in ids]
+            time.sleep(pause)
+            pause = min(1.3 * pause, LONGEST_POLL_S)
+
+    def fetch(self, bake: BakeOrId, folder: PathLike) -> Result:
+        """The result as a folder that appears whole or not at all: new, empty or an earlier result. An interrupted fetch
+        goes on where it stopped; every file is checked against its digest."""
+        return fetch_result(self._http, _id(bake), Path(folder), lambda fraction: self._progress("fetch", fraction))
+
+    def cancel(self, bake: BakeOrId) -> None:
+        """Cancelled already is as good; raises Refused when it is done or has failed."""
+        answer = self._http.ask("DELETE", f"/v1/bakes/{_id(bake)}")
+        if answer.status == 409 and self.status(bake).state == "cancelled":
+            return
+        if answer.status != 200:
+            raise answer.refuse()
+
+    def rebake(self, environment: PathLike, *, bakes: Optional[Sequence[BakeOrId]] = None, replaces: Optional[PathLike] = None,
+               name: Optional[str] = None, models: Optional[Sequence[PathLike]] = None,
+               irradiance: Optional[Mapping[str, Any]] = None, priority: int = 0) -> Batch:
+        """Bakes grooms again under a new environment; their transmittance is not computed again. Exactly one of `bakes`,
+        `replaces` (an environment), `name` (of an environment) and `models` says which."""
+        return _batch(self._rebake("", environment, bakes, replaces, name, models, irradiance, priority))
+
+    def rebake_forecast(self, environment: PathLike, *, bakes: Optional[Sequence[BakeOrId]] = None,
+                        replaces: Optional[PathLike] = None, name: Optional[str] = None,
+                        models: Optional[Sequence[PathLike]] = None, irradiance: Optional[Mapping[str, Any]] = None) -> Json:
+        """What rebake() would do: {"bakes": n, "reused_stages": {...}, "computed_stages": {...}}."""
+        return self._rebake("?dry_run=1", environment, bakes, replaces, name, models, irradiance, 0)
+
+    def batch(self, batch: Union[Batch, str]) -> Batch:
+        return _batch(self._http.json("GET", f"/v1/batches/{batch.id if isinstance(batch, Batch) else identifier(batch)}"))
+
+    def wait_batch(self, batch: Union[Batch, str]) -> List[Bake]:
+        """Until all of its bakes have ended, however; those bakes."""
+        pause = FIRST_POLL_S
+        while True:
+            now = self.batch(batch)
+            live = now.states.get("queued", 0) + now.states.get("running", 0)
+            self._progress("bake", 1 - live / max(1, now.bakes))
+            if not live:
+                return self.list(batch=now.id)
+            time.sleep(pause)
+            pause = min(1.3 * pause, LONGEST_POLL_S)
+
+    def with_paths(self, text: str) -> str:
+        """`text` with the paths of files that were sent instead of their digests."""
+        for reference, path in self._paths.items():
+            text = text.replace(reference, path)
+        return text
+
+    def _reference(self, value: PathLike) -> str:
+        text = os.fspath(value)
+        return text if REFERENCE.match(text) else self.upload(text)
+
+    def _poll(self, bake: str, tags: Dict[str, str]) -> Optional[Bake]:
+        """Nothing when it has not changed."""
+        answer = self._http.ask("GET", f"/v1/bakes/{bake}", {"If-None-Match": tags[bake]} if bake in tags else None)
+        if answer.status == 304:
+            return None
+        if answer.status != 200:
+            raise answer.refuse()
+        if "etag" in answer.headers:
+            tags[bake] = answer.headers["etag"]
+        return _bake(answer.json())
+
+    def _rebake(self, query: str, environment: PathLike, bakes: Optional[Sequence[BakeOrId]], replaces: Optional[PathLike],
+                name: Optional[str], models: Optional[Sequence[PathLike]], irradiance: Optional[Mapping[str, Any]],
+                priority: int) -> Json:
+        body: Json = {"environment": self._reference(environment), "priority": priority}
+        if bakes is not None:
+            body["bakes"] = [_id(bake) for bake in bakes]
+        if replaces is not None:
+            body["replaces"] = self._reference(replaces)
+        if name is not None:
+            body["name"] = name
+        if models is not None:
+            body["models"] = [self._reference(model) for model in models]
+        if irradiance is not None:
+            body["irradiance"] = dict(irradiance)
+        return self._http.json("POST", f"/v1/rebakes{query}", body)
+
+
+def _plain_filter(value: str) -> str:
+    if not re.fullmatch(r"[0-9A-Za-z._/:-]{1,600}", value):
+        raise UsageError(f"{plain(value)!r} is no filter")
+    return value

@@ -1,0 +1,152 @@
+"""Files that the server lacks, sent by tus 1.0 and resumed where an earlier attempt stopped."""
+from __future__ import annotations
+
+import base64
+import hashlib
+import os
+import re
+from pathlib import Path
+from typing import BinaryIO, Callable, Iterator, Optional
+
+from ._errors import ConnectionLost, HairbakeError, Refused, UsageError
+from ._http import PIECE, Http, identifier
+
+GONE = (404, 410)
+
+
+def open_input(path: Path) -> BinaryIO:
+    try:
+        return open(path, "rb")
+    except OSError as error:  # else it would be taken for one of the connection
+        raise HairbakeError(f"{path}: {error.strerror or error}") from error
+
+
+def digest_of_file(path: Path) -> str:
+    """SHA-256 as hexadecimal digits."""
+    digest = hashlib.sha256()
+    with open_input(path) as file:
+        while piece := file.read(1 << 20):
+            digest.update(piece)
+    return digest.hexdigest()
+
+
+def is_stored(http: Http, digest: str) -> bool:
+    answer = http.ask("HEAD", f"/v1/blobs/{digest}")
+    if answer.status == 404:
+        return False
+    if answer.status != 200:
+        raise answer.refuse()
+    return True
+
+
+class _Memory:
+    """The id of an unfinished upload, kept between processes; shared with the program hairbake."""
+
+    def __init__(self, url: str, digest: str) -> None:
+        cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+        self.file = cache / "hairbake/uploads" / hashlib.sha256(f"{url} {digest}".encode()).hexdigest()
+
+    def recall(self) -> str:
+        try:
+            return identifier(self.file.read_text().strip())
+        except (OSError, UnicodeDecodeError, Refused):
+            return ""
+
+    def keep(self, upload: str) -> None:
+        try:
+            self.file.parent.mkdir(parents=True, exist_ok=True)
+            self.file.write_text(upload + "\n")
+        except OSError:
+            pass  # then nothing is remembered
+
+    def forget(self) -> None:
+        try:
+            self.file.unlink()
+        except OSError:
+            pass
+
+
+class _Upload:
+    def __init__(self, http: Http, path: Path, digest: str, progress: Callable[[int], None]) -> None:
+        self.http, self.path, self.digest, self.progress = http, path, digest, progress
+        self.bytes = path.stat().st_size
+        self.memory = _Memory(http.url, digest)
+
+    def run(self) -> None:
+        patience, furthest, begun = self.http.patience(), 0, 0
+        upload = self.memory.recall()
+        while True:
+            try:
+                if not upload:
+                    begun += 1
+                    if begun > 3:
+                        raise Refused(f"the server loses the upload of {self.path} each time")
+                    upload = self.create()
+                    self.memory.keep(upload)
+                offset = self.offset_of(upload)
+                if offset is not None and offset > furthest:
+                    furthest = offset
+                    patience.renew()
+                if offset is not None and self.append(upload, offset):
+                    break
+                upload = ""  # it is gone: whole by now, or expired
+                self.memory.forget()
+                if is_stored(self.http, self.digest):
+                    break
+            except ConnectionLost as lost:
+                patience.wait(lost)
+        self.memory.forget()
+
+    def create(self) -> str:
+        metadata = "sha256 " + base64.b64encode(self.digest.encode()).decode()
+        answer = self.http.once("POST", "/v1/uploads", {
+            "Tus-Resumable": "1.0.0", "Upload-Length": str(self.bytes), "Upload-Metadata": metadata})
+        if answer.status != 201:
+            raise answer.refuse()
+        return identifier(answer.headers.get("location", "").rsplit("/", 1)[-1], "place for an upload")
+
+    def offset_of(self, upload: str) -> Optional[int]:
+        """Nothing when there is no such upload."""
+        answer = self.http.once("HEAD", f"/v1/uploads/{upload}", {"Tus-Resumable": "1.0.0"})
+        if answer.status in GONE:
+            return None
+        if answer.status != 200:
+            raise answer.refuse()
+        offset = answer.headers.get("upload-offset", "")
+        if not re.fullmatch("[0-9]{1,18}", offset) or int(offset) > self.bytes:
+            raise Refused(f"the server has more of {self.path} than there is")
+        return int(offset)
+
+    def append(self, upload: str, offset: int) -> bool:
+        """Sends what is left. False when the upload is gone."""
+        answer = self.http.once("PATCH", f"/v1/uploads/{upload}", {
+            "Tus-Resumable": "1.0.0", "Content-Type": "application/offset+octet-stream", "Upload-Offset": str(offset)},
+            source=self.pieces(offset), source_bytes=self.bytes - offset)
+        if answer.status in GONE:
+            return False
+        if answer.status == 409:  # another process sends it, or the lost connection is not closed yet over there
+            raise ConnectionLost(f"{self.http.url}: another request is at the upload of {self.path}")
+        if answer.status != 204:
+            raise answer.refuse()
+        return True
+
+    def pieces(self, offset: int) -> Iterator[bytes]:
+        with open_input(self.path) as file:
+            file.seek(offset)
+            while offset < self.bytes:
+                piece = file.read(min(PIECE, self.bytes - offset))
+                if not piece:
+                    raise HairbakeError(f"{self.path}: became shorter while it was sent")
+                yield piece
+                offset += len(piece)
+                self.progress(offset)
+
+
+def send_if_lacking(http: Http, path: Path, progress: Callable[[int], None]) -> str:
+    """"sha256:DIGEST" of the file, which the server then has. Raises HairbakeError."""
+    if path.is_dir():
+        raise UsageError(f"{path} is a folder; the service takes single files")
+    digest = digest_of_file(path)
+    if not is_stored(http, digest):
+        _Upload(http, path, digest, progress).run()
+    return f"sha256:{digest}"

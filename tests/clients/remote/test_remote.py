@@ -1,0 +1,394 @@
+"""`hairbake submit` and the like, and `python3 -m hairbake`, against the real daemon: both must do the same."""
+import json
+import os
+import random
+import signal
+import socket
+import subprocess
+import unittest
+
+from rig import PROGRAMS, QUICK, LastingDaemon, Liar, Proxy, TcpLiar, Workshop, first_word, sha256, tls_of_localhost, until
+from harness import Daemon, hair_bytes, hdr_bytes, quick_request, slow_request
+
+ENDED = "0" * 64  # the bake of a Liar
+NATIVE, PYTHON = [str(PROGRAMS / "hairbake")], ["/usr/bin/python3", "-m", "hairbake"]
+
+
+class Case(unittest.TestCase):
+    command = None
+
+    def setUp(self):
+        self.shop = Workshop(self.command)
+        self.addCleanup(self.shop.folder.cleanup)
+        self.hair = self.shop.write("groom.hair", hair_bytes())
+        self.sky = self.shop.write("sky.hdr", hdr_bytes())
+
+    def daemon(self, **settings):
+        daemon = LastingDaemon(**settings)
+        daemon.__enter__()
+        self.addCleanup(daemon.__exit__)
+        daemon.url = f"http://127.0.0.1:{daemon.port}"
+        return daemon
+
+    def run_ok(self, *words, url):
+        done = self.shop.run(*words, url=url)
+        self.assertEqual(done.code, 0, done)
+        return done
+
+    def run_failing(self, code, *words, url):
+        done = self.shop.run(*words, url=url)
+        self.assertEqual(done.code, code, done)
+        self.assertNotIn("Traceback", done.err)
+        return done
+
+
+class Jobs:
+    def test_submit_and_fetch_gives_the_files_of_a_bake_here(self):
+        daemon = self.daemon()
+        done = self.run_ok("submit", "--hair", self.hair, "--env", self.sky, *QUICK, "--fetch", "out", url=daemon.url)
+        here = [*NATIVE, "bake", "--hair", self.hair, "--env", self.sky, *QUICK, "--out", "here"]
+        subprocess.run(here, check=True, cwd=self.shop.path, capture_output=True)
+        ours, theirs = self.shop.files("out"), self.shop.files("here")
+        self.assertEqual(first_word(done.out), json.loads(theirs["manifest.json"])["id"])
+        # The service has a contact sheet a stage, and its manifest measures other times; all else is the same.
+        for name in ("preview.png", "manifest.json"):
+            del theirs[name]
+        sheets = {"manifest.json", "preview_transmittance.png", "preview_irradiance.png"}
+        self.assertEqual({name: data for name, data in ours.items() if name not in sheets}, theirs)
+        self.assertEqual(self.shop.names(), ["groom.hair", "here", "out", "sky.hdr"])  # nothing hidden is left
+        # What is fetched is a result like any other.
+        subprocess.run([*NATIVE, "info", "out"], check=True, cwd=self.shop.path, capture_output=True)
+
+    def test_submit_alone_prints_the_id_and_status_wait_and_fetch_take_it(self):
+        daemon = self.daemon()
+        submitted = self.run_ok("submit", "--hair", self.hair, *QUICK, "--priority", "3", url=daemon.url)
+        self.assertEqual(len(submitted.out.splitlines()), 1)
+        bake = first_word(submitted.out)
+        self.assertIn(f"{bake} done", self.run_ok("wait", bake, url=daemon.url).out)
+        self.assertIn(f"{bake} done", self.run_ok("status", bake, url=daemon.url).out)
+        self.assertIn(f"{bake} done", self.run_ok("status", url=daemon.url).out)
+        self.run_ok("fetch", bake, "--out", "out", url=daemon.url)
+        self.assertIn("transmittance.npy", self.shop.files("out"))
+        self.assertEqual(daemon.ask("GET", f"/v1/bakes/{bake}").json["priority"], 3)
+
+    def test_several_hairs_are_a_bake_each(self):
+        daemon = self.daemon()
+        other = self.shop.write("other.hair", hair_bytes(seed=5))
+        done = self.run_ok("submit", "--hair", self.hair, "--hair", other, "--env", self.sky, *QUICK, "--fetch", "all",
+                           url=daemon.url)
+        self.assertEqual(len({first_word(line) for line in done.out.splitlines()}), 2)
+        groom, second = self.shop.files("all/groom"), self.shop.files("all/other")
+        self.assertNotEqual(groom["transmittance.npy"], second["transmittance.npy"])
+        self.assertEqual(groom["diffuse.npy"], second["diffuse.npy"])
+
+    def test_an_input_that_the_server_has_is_not_sent_again(self):
+        daemon = self.daemon()
+        hair = self.shop.write("large.hair", hair_bytes(strands=2000, points=60))  # 12 bytes a point: 1.4 MB
+        with Proxy(daemon) as proxy:
+            self.run_ok("submit", "--hair", hair, *QUICK, "--wait", url=proxy.url)
+            self.assertGreater(proxy.sent, 1_440_000)
+            proxy.sent = 0
+            self.run_ok("submit", "--hair", hair, "--env", self.sky, *QUICK, "--wait", url=proxy.url)
+            self.assertLess(proxy.sent, 100_000)  # requests alone, under 1 KB each
+
+    def test_json_lines_tell_everything(self):
+        daemon = self.daemon()
+        done = self.run_ok("submit", "--hair", self.hair, *QUICK, "--fetch", "out", "--progress", "json", url=daemon.url)
+        events = done.events
+        self.assertEqual({event["event"] for event in events}, {"progress", "submitted", "done"})
+        self.assertEqual((events[-1]["event"], events[-1]["folder"]), ("done", "out"))
+        self.assertLessEqual({"upload", "bake", "fetch"}, {event.get("stage") for event in events})
+        failed = self.run_failing(7, "status", "0" * 64, "--progress", "json", url=daemon.url)
+        self.assertEqual((failed.events[-1]["event"], failed.events[-1]["kind"]), ("error", "refused"))
+
+    def test_a_failed_bake_tells_its_reason_with_the_path_of_the_file(self):
+        daemon = self.daemon()
+        broken = self.shop.write("broken.hair", hair_bytes()[:200])
+        done = self.run_failing(8, "submit", "--hair", broken, *QUICK, "--fetch", "out", url=daemon.url)
+        self.assertIn(broken, done.err)
+        self.assertNotIn("sha256:", done.err)
+        self.assertNotIn("out", self.shop.names())
+
+    def test_cancel(self):
+        daemon = self.daemon()
+        model = daemon.put(hair_bytes(strands=2000, points=60))
+        bake = daemon.ask("POST", "/v1/bakes", slow_request(model)).json["id"]
+        self.assertEqual(self.run_ok("cancel", bake, url=daemon.url).out, f"{bake} cancelled\n")
+        self.run_ok("cancel", bake, url=daemon.url)  # cancelled already is as good
+        self.assertIn("cancelled", self.run_failing(9, "wait", bake, url=daemon.url).err)
+
+    def test_an_interrupted_wait_leaves_the_bake_running_and_says_how_to_go_on(self):
+        daemon = self.daemon()
+        hair = self.shop.write("large.hair", hair_bytes(strands=2000, points=60))
+        slow = [word for setting in ("transmittance.method=trace", "transmittance.directions=4096",
+                                     "transmittance.direction_set=random") for word in ("--set", setting)]
+        with Proxy(daemon) as proxy:
+            process = self.shop.start("submit", "--hair", hair, *slow, "--wait", url=proxy.url)
+            until(lambda: any(head.startswith("GET /v1/bakes/") for head in proxy.heads), "a poll")
+            bake = daemon.ask("GET", "/v1/bakes").json["bakes"][0]["id"]
+            process.send_signal(signal.SIGINT)
+            done = self.shop.end(process)
+        self.assertEqual(done.code, 5, done)
+        self.assertIn(f"hairbake wait {bake} --server {proxy.url}", done.err)
+        self.assertIn(f"hairbake cancel {bake} --server {proxy.url}", done.err)
+        self.assertIn(daemon.ask("GET", f"/v1/bakes/{bake}").json["state"], ("queued", "running"))
+        self.run_ok("cancel", bake, url=daemon.url)
+
+    def test_rebake_computes_no_transmittance_again(self):
+        daemon = self.daemon()
+        bake = first_word(self.run_ok("submit", "--hair", self.hair, "--env", self.sky, *QUICK, "--fetch", "old",
+                                      url=daemon.url).out)
+        dusk = self.shop.write("dusk.hdr", hdr_bytes(red=200))
+        forecast = self.run_ok("rebake", "--env", dusk, "--bake", bake, "--dry-run", "--progress", "json", url=daemon.url).events
+        self.assertEqual(forecast[-1]["reused_stages"], {"transmittance": 1, "irradiance": 0})
+        self.assertEqual(forecast[-1]["computed_stages"], {"transmittance": 0, "irradiance": 1})
+        done = self.run_ok("rebake", "--env", dusk, "--replaces", self.sky, "--fetch", "new", url=daemon.url)
+        again = first_word(done.out)
+        old, new = self.shop.files("old"), self.shop.files(f"new/{again}")
+        self.assertEqual(old["transmittance.npy"], new["transmittance.npy"])
+        self.assertNotEqual(old["diffuse.npy"], new["diffuse.npy"])
+        views = [daemon.ask("GET", f"/v1/bakes/{id}").json for id in (bake, again)]
+        self.assertEqual(views[0]["stages"][0], views[1]["stages"][0])  # its attempts too: it ran once
+        batch = first_word(self.run_ok("rebake", "--env", dusk, "--bake", bake, url=daemon.url).out)
+        self.assertIn(f"{again} done", self.run_ok("wait", "--batch", batch, url=daemon.url).out)
+
+    def test_names(self):
+        daemon = self.daemon()
+        stored = self.run_ok("upload", self.sky, "--as", "environment", "--name", "stage1/noon", "--note", "v1", url=daemon.url)
+        self.assertEqual(first_word(stored.out), f"sha256:{sha256(hdr_bytes())}")
+        bake = first_word(self.run_ok("submit", "--hair", self.hair, "--env", "name:stage1/noon", *QUICK, "--wait",
+                                      url=daemon.url).out)
+        view = daemon.ask("GET", f"/v1/bakes/{bake}").json
+        self.assertEqual(view["names"]["environment"], {"path": "stage1/noon", "version": 1})
+        self.assertEqual(daemon.ask("GET", f"/v1/environments/{sha256(hdr_bytes())}").status, 200)
+
+
+class Refusals:
+    def test_what_is_wrong_is_said_in_words_and_by_the_exit_code(self):
+        daemon = self.daemon()
+        for code, words, said in (
+                (3, ["submit", "--hair", "nothing.hair"], "nothing.hair"),
+                (2, ["submit", "--hair", self.hair, "--env", str(self.shop.path)], "one file"
+                    if self.command is NATIVE else "single files"),
+                (7, ["submit", "--hair", "name:nobody/knows"], "hair"),
+                (7, ["submit", "--hair", "sha256:" + "0" * 64], "which is not stored"),
+                (7, ["wait", "0" * 64], "there is no bake"),
+                (7, ["rebake", "--env", self.sky, "--name", "nothing"], "name")):
+            with self.subTest(words):
+                self.assertIn(said, self.run_failing(code, *words, url=daemon.url).err)
+
+    def test_a_wrong_token_is_refused_and_no_token_is_printed(self):
+        token = "t0ken-of-the-tests-that-nobody-may-read-0123456789"
+        tokens = f'[[token]]\nname = "farm"\nsha256 = "{sha256(token.encode())}"\nscopes = ["read", "upload", "bake"]\n'
+        daemon = self.daemon(tokens=tokens)
+        good, bad = self.shop.write("good", token.encode() + b"\n"), self.shop.write("bad", b"wrong-" + token.encode())
+        os.chmod(good, 0o600)
+        os.chmod(bad, 0o644)
+        for words in (["status"], ["status", "--token-file", bad]):
+            done = self.run_failing(7, *words, url=daemon.url)
+            self.assertIn("token", done.err)
+            self.assertNotIn(token, done.out + done.err)
+        self.assertIn("can be read by everybody", done.err)
+        done = self.run_ok("submit", "--hair", self.hair, *QUICK, "--wait", "--token-file", good, url=daemon.url)
+        self.assertNotIn("everybody", done.err)
+        self.shop.environment.update(HAIRBAKE_SERVER=daemon.url, HAIRBAKE_TOKEN_FILE=good)
+        self.run_ok("status", url=None)
+
+    def test_a_folder_with_other_files_is_left_alone(self):
+        daemon = self.daemon()
+        (self.shop.path / "mine").mkdir()
+        self.shop.write("mine/diary.txt", b"dear diary")
+        done = self.run_failing(2, "submit", "--hair", self.hair, *QUICK, "--fetch", "mine", url=daemon.url)
+        self.assertIn("mine", done.err)
+        self.assertEqual(self.shop.files("mine"), {"diary.txt": b"dear diary"})
+
+    def test_a_server_that_is_not_there(self):
+        with socket.create_server(("127.0.0.1", 0)) as free:
+            url = f"http://127.0.0.1:{free.getsockname()[1]}"
+        self.assertIn(url, self.run_failing(6, "status", "--patience", "0.3", url=url).err)
+        self.run_failing(2, "status", url="ftp://127.0.0.1")
+
+    def test_a_certificate_is_checked(self):
+        context, certificate = tls_of_localhost(self.shop.path)
+        with Proxy(self.daemon(), tls=context) as proxy:
+            self.run_ok("submit", "--hair", self.hair, *QUICK, "--fetch", "out", "--ca-file", certificate, url=proxy.url)
+            self.assertIn("certificate", self.run_failing(6, "status", url=proxy.url).err)
+
+
+class Interruptions:
+    """What is cut goes on where it stopped."""
+
+    def big_file(self):
+        return self.shop.write("big.obj", random.Random(1).randbytes(8_000_000))
+
+    def bake_with_large_files(self, daemon):
+        """specular.npy has 33 maps of 6 x 64 x 64 x 3 floats: 9.7 MB."""
+        sky = daemon.put(hdr_bytes())
+        request = quick_request(environment=sky, irradiance={"face_size": 64, "specular_maps": 33})
+        bake = daemon.ask("POST", "/v1/bakes", request).json["id"]
+        daemon.wait(bake)
+        return bake
+
+    def offsets(self, proxy):
+        """Upload-Offset of the PATCH requests."""
+        lines = [line for head in proxy.heads if head.startswith("PATCH") for line in head.lower().split("\r\n")]
+        return [int(line.split(":")[1]) for line in lines if line.startswith("upload-offset")]
+
+    def test_an_upload_goes_on_after_a_lost_connection(self):
+        daemon, big = self.daemon(), self.big_file()
+        with Proxy(daemon, cut_sent=4_000_000) as proxy:
+            done = self.run_ok("upload", big, url=proxy.url)
+            first, second = self.offsets(proxy)
+            self.assertEqual(first, 0)
+            self.assertGreater(second, 0)
+            # The daemon had received everything that was forwarded, but for what its socket held.
+            self.assertLess(proxy.sent, 8_000_000 + 1_000_000)
+        digest = first_word(done.out).split(":")[1]
+        self.assertEqual(daemon.ask("HEAD", f"/v1/blobs/{digest}").status, 200)
+
+    def test_an_upload_of_a_process_that_ended_goes_on_in_the_next(self):
+        daemon, big = self.daemon(), self.big_file()
+        with Proxy(daemon, cut_sent=4_000_000, stall=True) as proxy:
+            process = self.shop.start("upload", big, url=proxy.url)
+            self.assertTrue(proxy.stalled.wait(60))
+            process.send_signal(signal.SIGINT)
+            self.assertEqual(self.shop.end(process).code, 5)
+            upload = next((self.shop.path / "cache/hairbake/uploads").iterdir())
+        with Proxy(daemon, port=proxy.port) as again:  # uploads are remembered by the server's address
+            self.run_ok("upload", big, url=again.url)
+            self.assertEqual(len(self.offsets(again)), 1)
+            self.assertGreater(self.offsets(again)[0], 0)
+        self.assertFalse(upload.exists())  # it is whole: nothing to remember
+
+    def test_a_fetch_goes_on_after_a_lost_connection(self):
+        daemon = self.daemon()
+        bake = self.bake_with_large_files(daemon)
+        with Proxy(daemon, cut_received=4_000_000) as proxy:
+            self.run_ok("fetch", bake, "--out", "out", url=proxy.url)
+            self.assertEqual(sum("\r\nrange:" in head.lower() for head in proxy.heads), 1)
+            size = sum(len(data) for data in self.shop.files("out").values())
+            self.assertGreater(size, 9_700_000)
+            self.assertLess(proxy.received, size + 1_000_000)  # heads, and what the client's socket held at the cut
+        self.assertEqual(sha256(self.shop.files("out")["specular.npy"]), sha256(daemon.file(bake, "specular.npy")))
+
+    def test_a_fetch_of_a_process_that_ended_goes_on_in_the_next(self):
+        daemon = self.daemon()
+        bake = self.bake_with_large_files(daemon)
+        with Proxy(daemon, cut_received=4_000_000, stall=True) as proxy:
+            process = self.shop.start("fetch", bake, "--out", "out", url=proxy.url)
+            self.assertTrue(proxy.stalled.wait(60))
+            part = lambda: sum(f.stat().st_size for f in (self.shop.path / ".out.hairbake-fetch").iterdir())
+            until(lambda: part() > 1_000_000, "a part on the disk")
+            process.send_signal(signal.SIGTERM)
+            self.assertEqual(self.shop.end(process).code, 5)
+            self.assertNotIn("out", self.shop.names())
+            self.assertGreater(part(), 1_000_000)
+        with Proxy(daemon) as again:
+            self.run_ok("fetch", bake, "--out", "out", url=again.url)
+            self.assertLess(again.received, 9_700_000)
+        self.assertEqual(self.shop.files("out")["specular.npy"], daemon.file(bake, "specular.npy"))
+        self.assertNotIn(".out.hairbake-fetch", self.shop.names())
+
+    def test_a_part_with_wrong_bytes_is_fetched_anew(self):
+        daemon = self.daemon()
+        bake = self.bake_with_large_files(daemon)
+        specular = daemon.file(bake, "specular.npy")
+        (self.shop.path / ".out.hairbake-fetch").mkdir()
+        self.shop.write(f".out.hairbake-fetch/{sha256(specular)}", b"x" * 1000)
+        self.run_ok("fetch", bake, "--out", "out", url=daemon.url)
+        self.assertEqual(self.shop.files("out")["specular.npy"], specular)
+
+    def test_what_the_folder_has_already_is_not_fetched_again(self):
+        daemon = self.daemon()
+        bake = self.bake_with_large_files(daemon)
+        self.run_ok("fetch", bake, "--out", "out", url=daemon.url)
+        with Proxy(daemon) as proxy:
+            self.run_ok("fetch", bake, "--out", "out", url=proxy.url)
+            self.assertLess(proxy.received, 1_000_000)  # the manifest
+
+    def test_wait_outlasts_a_killed_daemon(self):
+        daemon = self.daemon()
+        model = daemon.put(hair_bytes(strands=100))
+        bake = daemon.ask("POST", "/v1/bakes", slow_request(model)).json["id"]
+        process = self.shop.start("wait", bake, url=daemon.url)
+        daemon.wait_for_worker()
+        daemon.kill()
+        with self.assertRaises(subprocess.TimeoutExpired):
+            process.wait(1.5)  # it goes on trying
+        daemon.start()
+        done = self.shop.end(process)
+        self.assertEqual(done.code, 0, done)
+        self.assertIn(f"{bake} done", done.out)
+
+
+class Lies:
+    """Servers are not trusted either."""
+
+    def refuses(self, listed, files=None, **lie):
+        with Liar(listed, files or {}, **lie) as liar:
+            done = self.run_failing(7, "fetch", ENDED, "--out", "out", url=liar.url)
+        self.assertEqual([name for name in self.shop.names() if not name.startswith(".")], ["groom.hair", "sky.hdr"])
+        return done
+
+    def test_names_in_a_manifest_cannot_leave_the_folder(self):
+        data, outside = b"evil", self.shop.path.parent / "hairbake-evil"
+        for name in ("../hairbake-evil", str(outside), "a/b", "..", ".", ".bashrc", "", "manifest.json", "a\\b", "a\nb", "a%2fb"):
+            with self.subTest(name):
+                entry = {"name": name, "sha256": sha256(data), "bytes": len(data)}
+                self.refuses([entry], {name: data, name.rsplit("/", 1)[-1]: data})
+                self.assertFalse(outside.exists())
+
+    def test_a_digest_cannot_name_a_place(self):
+        self.refuses([{"name": "a.npy", "sha256": "../../../../tmp/x", "bytes": 1}])
+        self.refuses([{"name": "a.npy", "sha256": 5, "bytes": 1}])
+        self.refuses([{"name": "a.npy", "sha256": "0" * 64, "bytes": -1}])
+        self.refuses([{"name": "a.npy", "sha256": "0" * 64, "bytes": "many"}])
+        self.refuses("everything")
+
+    def test_other_bytes_than_the_digest_says_are_refused(self):
+        entry = {"name": "a.npy", "sha256": sha256(b"good"), "bytes": 4}
+        self.assertIn("a.npy", self.refuses([entry], {"a.npy": b"evil"}).err)
+        self.assertIn("a.npy", self.refuses([entry], {"a.npy": b"good and more"}).err)
+        self.assertIn("manifest", self.refuses([], manifest_tag="0" * 64).err)
+
+    def test_answers_without_end_are_cut(self):
+        files = f"/v1/bakes/{ENDED}/files"
+        self.refuses([], endless=f"{files}/manifest.json")
+        self.refuses([{"name": "a.npy", "sha256": "0" * 64, "bytes": 100}], endless=f"{files}/a.npy")
+        with Liar([], {}, endless=f"/v1/bakes/{ENDED}") as liar:
+            self.run_failing(7, "status", ENDED, url=liar.url)
+
+    def test_what_is_no_service_is_told_so(self):
+        with Liar([], {"bakes?limit=20": b"<html>hello</html>", ENDED: b'{"id": 7, "state": []}'}) as liar:
+            self.run_failing(7, "status", ENDED, url=liar.url)
+        with TcpLiar(b"HTTP/1.1 200 OK\r\n", b"X-More: " + b"x" * 1000 + b"\r\n") as liar:
+            self.run_failing(self.endless_headers, "status", "--patience", "0", url=liar.url)
+        with TcpLiar(b"HTTP/1.1 200 OK\r\nContent-Length: 2000\r\n\r\n", b"[" * 2000) as liar:
+            self.run_failing(7, "status", ENDED, url=liar.url)
+
+    @property
+    def endless_headers(self):
+        return 7 if self.command is NATIVE else 6  # Python's library ends the connection itself
+
+    def test_control_characters_of_a_server_do_not_reach_the_terminal(self):
+        problem = json.dumps({"title": "\x1b[31mred\x07", "detail": "\x1b]0;title\x07"}).encode()
+        head = f"HTTP/1.1 422 No\r\nContent-Type: application/problem+json\r\nContent-Length: {len(problem)}\r\n\r\n"
+        with TcpLiar(head.encode() + problem, b"") as liar:
+            done = self.run_failing(7, "status", ENDED, url=liar.url)
+        self.assertNotIn("\x1b", done.err)
+        self.assertNotIn("\x07", done.err)
+
+
+def both(kind):
+    """A class of tests for each of the two clients."""
+    return (type(f"Native{kind.__name__}", (kind, Case), {"command": NATIVE}),
+            type(f"Python{kind.__name__}", (kind, Case), {"command": PYTHON}))
+
+
+NativeJobs, PythonJobs = both(Jobs)
+NativeRefusals, PythonRefusals = both(Refusals)
+NativeInterruptions, PythonInterruptions = both(Interruptions)
+NativeLies, PythonLies = both(Lies)
+
+if __name__ == "__main__":
+    unittest.main()
