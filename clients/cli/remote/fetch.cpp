@@ -24,7 +24,7 @@ public:
     explicit PartFolder(const fs::path& folder) {
         fs::path result = fs::weakly_canonical(fs::absolute(folder)).lexically_normal();
         if (!result.has_filename()) result = result.parent_path();
-        path_ = result.parent_path() / ("." + result.filename().string() + ".hairbake-fetch");
+        path_ = result.parent_path() / std::string(".").append(result.filename().string()).append(".hairbake-fetch");
         fs::create_directories(path_);
         descriptor_ = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW);
         if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), path_.string());
@@ -98,7 +98,7 @@ private:
         call.path = address_ + "manifest.json";
         const HttpAnswer answer = server_.ask(call);
         if (answer.status != 200) refuse(answer);
-        if (answer.header("etag") != "\"" + Digest().add(answer.body).hex() + "\"")
+        if (answer.header("etag") != std::string("\"").append(Digest().add(answer.body).hex()).append("\""))
             throw RemoteError(ExitCode::refused, "the manifest that came is not the one that its digest names");
         return answer.body;
     }

@@ -6,13 +6,14 @@ it is computed once a groom, and the maps once a lighting. Results go to OUT/SKY
 import os
 import sys
 from pathlib import Path
+from typing import Any, Dict, List
 
 import hairbake
 
-FIELDS = {"transmittance": {"directions": 64, "voxels": 128}, "outputs": ["npy"]}
+FIELDS: Dict[str, Any] = {"transmittance": {"directions": 64, "voxels": 128}, "outputs": ["npy"]}
 
 
-def main(grooms: str, skies: "list[str]", out: str) -> None:
+def main(grooms: str, skies: List[str], out: str) -> None:
     client = hairbake.Client(os.environ["HAIRBAKE_SERVER"], token_file=os.environ.get("HAIRBAKE_TOKEN_FILE"))
     first, *others = skies
     name_of = {}  # of a groom, by its model's digest

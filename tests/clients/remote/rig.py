@@ -55,6 +55,7 @@ class Proxy:
 
     def __exit__(self, *_):
         self.closing.set()
+        self.listener.shutdown(socket.SHUT_RDWR)  # wakes accept(), which else keeps the port
         self.listener.close()
 
     def accept(self):

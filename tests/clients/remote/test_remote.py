@@ -8,7 +8,7 @@ import subprocess
 import unittest
 
 from rig import PROGRAMS, QUICK, LastingDaemon, Liar, Proxy, TcpLiar, Workshop, first_word, sha256, tls_of_localhost, until
-from harness import Daemon, hair_bytes, hdr_bytes, quick_request, slow_request
+from harness import hair_bytes, hdr_bytes, quick_request, slow_request
 
 ENDED = "0" * 64  # the bake of a Liar
 NATIVE, PYTHON = [str(PROGRAMS / "hairbake")], ["/usr/bin/python3", "-m", "hairbake"]

@@ -1,0 +1,82 @@
+"""The Python package as a pipeline script uses it."""
+import sys
+import unittest
+
+from rig import ROOT, LastingDaemon, Workshop
+from harness import hair_bytes, hdr_bytes
+
+sys.path.insert(0, str(ROOT / "clients/python"))
+import hairbake  # noqa: E402
+import numpy  # noqa: E402
+
+FIELDS = {"transmittance": {"directions": 16, "voxels": 32, "reference_vertices": 0},
+          "irradiance": {"face_size": 4, "specular_maps": 3}, "outputs": ["npy"]}
+
+
+class Api(unittest.TestCase):
+    def setUp(self):
+        self.shop = Workshop(["/usr/bin/python3"])
+        self.addCleanup(self.shop.folder.cleanup)
+        self.daemon = LastingDaemon()
+        self.daemon.__enter__()
+        self.addCleanup(self.daemon.__exit__)
+        self.url = f"http://127.0.0.1:{self.daemon.port}"
+        self.hair = self.shop.write("groom.hair", hair_bytes())
+        self.sky = self.shop.write("sky.hdr", hdr_bytes())
+        self.client = hairbake.Client(self.url, patience_s=5)
+
+    def test_submit_wait_fetch_and_arrays(self):
+        bake = self.client.submit(hair=self.hair, environment=self.sky, **FIELDS)
+        result = self.client.fetch(self.client.wait(bake), self.shop.path / "out")
+        arrays = result.arrays()
+        self.assertEqual(arrays["transmittance"].shape, (400,))  # 40 strands of 10 points
+        self.assertEqual(arrays["specular"].shape, (3, 6, 4, 4, 3))
+        self.assertEqual(arrays["transmittance"].dtype, numpy.float32)
+        self.assertEqual(result.manifest()["id"], bake.id)
+        self.assertEqual([other.id for other in self.client.list(state="done")], [bake.id])
+        # The same request again is done at once.
+        self.assertEqual(self.client.submit(hair=self.hair, environment=self.sky, **FIELDS).state, "done")
+
+    def test_arrays_without_numpy_have_the_same_shape_and_values(self):
+        bake = self.client.wait(self.client.submit(hair=self.hair, environment=self.sky, **FIELDS))
+        self.client.fetch(bake, self.shop.path / "out")
+        script = ("import sys; sys.modules['numpy'] = None\nfrom pathlib import Path\nfrom hairbake._arrays import read_arrays\n"
+                  "a = read_arrays(Path('out'))\nprint(a['specular'].shape, a['specular'][2, 5, 1, 2, 0], a['transmittance'][399])")
+        done = self.shop.run("-c", script)
+        there = {name: numpy.load(self.shop.path / f"out/{name}.npy") for name in ("specular", "transmittance")}
+        expected = ((3, 6, 4, 4, 3), float(there["specular"][2, 5, 1, 2, 0]), float(there["transmittance"][399]))
+        self.assertEqual(done.out, f"{expected[0]} {expected[1]} {expected[2]}\n", done)
+
+    def test_failures_are_exceptions_with_the_field(self):
+        with self.assertRaises(hairbake.Refused) as refused:
+            self.client.submit(hair=self.hair, transmittance={"voxels": 7})
+        self.assertEqual((refused.exception.field, refused.exception.status), ("transmittance.voxels", 422))
+        with self.assertRaises(hairbake.BakeFailed) as failed:
+            self.client.wait(self.client.submit(hair=self.shop.write("broken.hair", hair_bytes()[:200])))
+        self.assertIn("broken.hair", str(failed.exception))
+        self.daemon.kill()
+        with self.assertRaises(hairbake.Unreachable):
+            hairbake.Client(self.url, patience_s=0).list()
+        self.daemon.start()
+
+    def test_the_example_bakes_a_folder_under_three_lightings_and_transmittance_once(self):
+        (self.shop.path / "grooms").mkdir()
+        for name, seed in (("fringe", 1), ("bun", 2)):
+            self.shop.write(f"grooms/{name}.hair", hair_bytes(seed=seed))
+        skies = [self.shop.write(f"{name}.hdr", hdr_bytes(red=red)) for name, red in (("dawn", 90), ("noon", 200), ("dusk", 30))]
+        self.shop.environment["HAIRBAKE_SERVER"] = self.url
+        done = self.shop.run(ROOT / "clients/python/examples/three_lightings.py", "grooms", *skies, "out")
+        self.assertEqual(done.code, 0, done)
+        load = lambda sky, groom, array: numpy.load(self.shop.path / f"out/{sky}/{groom}/{array}.npy")
+        for groom in ("fringe", "bun"):
+            for sky in ("noon", "dusk"):
+                self.assertTrue(numpy.array_equal(load("dawn", groom, "transmittance"), load(sky, groom, "transmittance")))
+                self.assertFalse(numpy.array_equal(load("dawn", groom, "diffuse"), load(sky, groom, "diffuse")))
+        # 2 grooms and 3 skies: five stages for six bakes, and each ran once.
+        bakes = [self.client.status(bake) for bake in self.client.list()]
+        stages = {stage["key"]: stage["attempts"] for bake in bakes for stage in bake.view["stages"]}
+        self.assertEqual((len(bakes), len(stages), set(stages.values())), (6, 5, {1}))
+
+
+if __name__ == "__main__":
+    unittest.main()
