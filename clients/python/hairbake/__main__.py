@@ -140,8 +140,7 @@ def submit(client: Client, arguments: Arguments, display: Display) -> None:
 
 def status(client: Client, arguments: Arguments, display: Display) -> None:
     for bake in [client.status(id) for id in arguments.id] or client.list()[:20]:
-        fraction = bake.view.get("fraction")
-        percent = f" {100 * fraction:.0f} %" if bake.state == "running" and isinstance(fraction, (int, float)) else ""
+        percent = f" {100 * bake.fraction:.0f} %" if bake.state == "running" else ""
         display.line(f"{bake.id} {bake.state}{percent} {bake.message}".rstrip(), "status", bake=bake.view)
 
 
@@ -177,7 +176,10 @@ def rebake(client: Client, arguments: Arguments, display: Display) -> None:
     if len(which) != 1:
         raise UsageError("exactly one of --bake, --replaces, --name and --model says what to bake again", "bakes")
     if arguments.irradiance:
-        which["irradiance"] = json.loads(arguments.irradiance)
+        try:
+            which["irradiance"] = dict(json.loads(arguments.irradiance))
+        except (ValueError, TypeError) as error:
+            raise UsageError(f"irradiance is {arguments.irradiance}; allowed is a JSON object", "irradiance") from error
     if arguments.dry_run:
         forecast = client.rebake_forecast(arguments.environment, **which)
         return display.line(json.dumps(forecast), "forecast", **forecast)
@@ -270,6 +272,9 @@ def main(words: Optional[List[str]] = None) -> int:
             display.event("error", kind=error.kind, field=error.field, message=str(error))
         print(f"hairbake: error: {error}", file=sys.stderr)
         return error.exit_code
+    except OSError as error:
+        print(f"hairbake: error: {error}", file=sys.stderr)
+        return HairbakeError.exit_code
     except KeyboardInterrupt:
         return 5
 

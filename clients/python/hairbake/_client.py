@@ -29,6 +29,12 @@ class Bake(NamedTuple):
     view: Json
 
     @property
+    def fraction(self) -> float:
+        """How much of it is done, 0 to 1."""
+        fraction = self.view.get("fraction")
+        return min(1.0, max(0.0, float(fraction))) if isinstance(fraction, (int, float)) else 0.0
+
+    @property
     def message(self) -> str:
         """Why it failed, or empty."""
         error = self.view.get("error")
@@ -66,15 +72,17 @@ def read_token(file: PathLike) -> str:
     return token
 
 
-def _bake(view: Json) -> Bake:
+def _bake(view: Any) -> Bake:
+    if not isinstance(view, dict):
+        raise Refused("the server's answer is no bake")
     return Bake(identifier(view.get("id")), str(view.get("state")), view)
 
 
 def _batch(view: Json) -> Batch:
     states, bakes = view.get("states"), view.get("bakes")
-    if not isinstance(states, dict) or not isinstance(bakes, int):
+    if not isinstance(bakes, int) or not isinstance(states, dict) or not all(isinstance(n, int) for n in states.values()):
         raise Refused("the server's answer is no batch")
-    return Batch(identifier(view.get("id")), bakes, {str(name): int(count) for name, count in states.items()})
+    return Batch(identifier(view.get("id")), bakes, states)
 
 
 def _id(bake: BakeOrId) -> str:
@@ -133,7 +141,10 @@ class Client:
         cursor = ""
         while True:
             page = self._http.json("GET", f"/v1/bakes?limit=1000&{query}{cursor}")
-            bakes += [_bake(view) for view in page.get("bakes", [])]
+            views = page.get("bakes")
+            if not isinstance(views, list):
+                raise Refused("the server's answer is no list of bakes")
+            bakes += [_bake(view) for view in views]
             if page.get("next") is None:
                 return bakes
             cursor = f"&cursor={identifier(page['next'], 'cursor')}"
@@ -166,7 +177,7 @@ class Client:
                     if view and view.state in ENDED:
                         ended[bake] = view
                     elif view:
-                        fractions += float(view.view.get("fraction") or 0)
+                        fractions += view.fraction
             self._progress("bake", (len(ended) + fractions) / max(1, len(set(ids))))
             if len(ended) == len(set(ids)):
                 return [ended[bake] for bake in ids]
