@@ -159,7 +159,7 @@ class Liar:
 
 
 class TcpLiar:
-    """A server that answers every request with `head` and then `forever`, again and again."""
+    """A server that answers every request with `head` and then `forever`, again and again, or closes when that is empty."""
 
     def __init__(self, head, forever):
         class Handler(socketserver.BaseRequestHandler):
@@ -167,7 +167,7 @@ class TcpLiar:
                 try:
                     self.request.recv(65536)
                     self.request.sendall(head)
-                    while True:
+                    while forever:
                         self.request.sendall(forever)
                 except OSError:
                     pass
