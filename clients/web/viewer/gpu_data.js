@@ -5,6 +5,7 @@ import { cube_atlas } from './cube_atlas.js';
 /** Lines between neighbouring vertices of a strand; the attributes are those of hair_shader.js. */
 export function strand_geometry(strands) {
     const geometry = new THREE.BufferGeometry();
+    geometry.boundingSphere = new THREE.Sphere(); // else three.js reads the positions, which are gone by then
     geometry.setIndex(attribute(segments(strands.strand_begin), 1));
     geometry.setAttribute('position', attribute(strands.positions, 3));
     geometry.setAttribute('tangent_and_transmittance', halves(strands.tangent_and_transmittance, 4));
