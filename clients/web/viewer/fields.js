@@ -4,12 +4,15 @@ import { from_hex, to_hex } from './color.js';
 
 export function Slider({ label, value, min, max, step = 0.01, unit = '', on }) {
     const text = `${Number(value.toFixed(3))}${unit && ` ${unit}`}`;
-    return html`<label class="viewer-slider">
-        <span>${label}</span>
+    // The number stands outside the label: an output inside would be what the label names.
+    return html`<div class="viewer-slider">
+        <label>
+            <span>${label}</span>
+            <input type="range" min=${min} max=${max} step=${step} value=${value} aria-valuetext=${text}
+                onInput=${event => on(event.target.valueAsNumber)} />
+        </label>
         <output>${text}</output>
-        <input type="range" min=${min} max=${max} step=${step} value=${value} aria-valuetext=${text}
-            onInput=${event => on(event.target.valueAsNumber)} />
-    </label>`;
+    </div>`;
 }
 
 export function Choice({ label, value, options, on }) {
