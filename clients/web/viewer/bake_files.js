@@ -1,5 +1,5 @@
-// What the viewer needs of a bake: its request, and the files of the output `raw` as typed arrays. The bytes come from a
-// service that anyone may write to, so that every number is compared with the size of what it describes.
+// What the viewer needs of a bake: its request, and the files of the output `raw` as typed arrays. The bytes come from
+// a service that anyone may write to, so that every number is compared with the size of what it describes.
 
 const needed = ['strands.json', 'strands.bin', 'maps.json', 'maps.f16'];
 
@@ -42,14 +42,16 @@ function refuse_unfit(view) {
     const missing = ['hair', 'environment'].filter(input => !view.request[input]);
     if (missing.length)
         throw new BakeProblem(
-            `This bake has no ${missing.join(' and no ')}. The viewer needs both: ask for a bake of a hair model and an ` +
-                'environment, with "raw" among its outputs.');
+            `This bake has no ${missing.join(' and no ')}. The viewer needs both: ask for a bake of a hair model and ` +
+                'an environment, with "raw" among its outputs.',
+        );
     const names = new Set(view.files.map(file => file.name));
     if (needed.some(name => !names.has(name)))
         throw new BakeProblem(
-            'This bake did not write the output "raw", which is what the viewer reads. Ask for the same bake with "raw" ' +
-                'among its outputs; what it computed already is computed again only to be written.',
-            { ...view.request, outputs: [...new Set([...view.request.outputs, 'raw'])] });
+            'This bake did not write the output "raw", which is what the viewer reads. Ask for the same bake with ' +
+                '"raw" among its outputs; what it computed already is computed again only to be written.',
+            { ...view.request, outputs: [...new Set([...view.request.outputs, 'raw'])] },
+        );
 }
 
 async function get(api, id, name, signal, body) {
@@ -58,7 +60,10 @@ async function get(api, id, name, signal, body) {
     return body(reply);
 }
 
-/** {vertices, bounds, sh_bands, has_cone, positions, strand_begin, tangent_and_transmittance, transmittance_sh?, bent_cone?}. */
+/**
+ * {vertices, bounds, sh_bands, has_cone, positions, strand_begin, tangent_and_transmittance, transmittance_sh?,
+ * bent_cone?}.
+ */
 export function read_strands(page, buffer) {
     const vertices = page.vertices;
     demand(page.content === 'hairbake strands', 'strands.json is no list of strands');
@@ -95,15 +100,19 @@ function named_array(page, buffer, name, Type, size) {
     const entry = page.arrays.find(array => array.name === name);
     demand(entry, `strands.json has no array ${name}`);
     const bytes = size * Type.BYTES_PER_ELEMENT;
-    demand(entry.bytes === bytes && entry.offset % 8 === 0 && entry.offset + bytes <= buffer.byteLength,
-        `strands.bin does not hold ${name} as strands.json tells`);
+    demand(
+        entry.bytes === bytes && entry.offset % 8 === 0 && entry.offset + bytes <= buffer.byteLength,
+        `strands.bin does not hold ${name} as strands.json tells`,
+    );
     return new Type(buffer, entry.offset, size);
 }
 
 function refuse_strands(strand_begin, vertices) {
     const ordered = strand_begin.every((begin, s) => s === 0 || begin >= strand_begin[s - 1]);
-    demand(strand_begin[0] === 0 && ordered && strand_begin[strand_begin.length - 1] === vertices,
-        'strands.bin: strand_begin does not divide the vertices');
+    demand(
+        strand_begin[0] === 0 && ordered && strand_begin[strand_begin.length - 1] === vertices,
+        'strands.bin: strand_begin does not divide the vertices',
+    );
 }
 
 function demand(holds, problem) {

@@ -19,14 +19,19 @@ export function BakeOrder({ api, request, old, label, disabled = false }) {
     useEffect(() => follow(api, bake, set_bake, set_problem), [bake]);
     const waits = bake && ['queued', 'running'].includes(bake.state);
     return html`<div>
-        <button type="button" disabled=${disabled || waits} aria-busy=${waits ? 'true' : 'false'} onClick=${ask}>${label}</button>
-        <p role="status" class="viewer-note">${problem ? `It was not baked: ${problem}` : html`<${Progress} bake=${bake} old=${old} />`}</p>
+        <button type="button" disabled=${disabled || waits} aria-busy=${waits ? 'true' : 'false'} onClick=${ask}>
+            ${label}
+        </button>
+        <p role="status" class="viewer-note">
+            ${problem ? `It was not baked: ${problem}` : html`<${Progress} bake=${bake} old=${old} />`}
+        </p>
     </div>`;
 }
 
 function Progress({ bake, old }) {
     if (!bake) return null;
-    if (bake.state !== 'done') return `The new bake is ${bake.state}${bake.error ? `: ${bake.error.detail ?? ''}` : ''}.`;
+    if (bake.state !== 'done')
+        return `The new bake is ${bake.state}${bake.error ? `: ${bake.error.detail ?? ''}` : ''}.`;
     return html`Baked: <a href=${`#/view/${bake.id}`}>open the new bake</a>
         ${old && old !== bake.id && html` or <a href=${`#/view/${old}/${bake.id}`}>compare it with this one</a>`}.`;
 }

@@ -2,7 +2,16 @@
 
 export function to_hex(linear) {
     const code = x => Math.round(255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055));
-    return '#' + linear.map(x => code(Math.min(Math.max(x, 0), 1)).toString(16).padStart(2, '0')).join('');
+    return (
+        '#' +
+        linear
+            .map(x =>
+                code(Math.min(Math.max(x, 0), 1))
+                    .toString(16)
+                    .padStart(2, '0'),
+            )
+            .join('')
+    );
 }
 
 export function from_hex(hex) {

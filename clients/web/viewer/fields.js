@@ -19,7 +19,9 @@ export function Choice({ label, value, options, on }) {
     return html`<label>
         ${label}
         <select value=${value} onChange=${event => on(event.target.value)}>
-            ${Object.entries(options).map(([key, text]) => html`<option value=${key} selected=${key === value}>${text}</option>`)}
+            ${Object.entries(options).map(
+                ([key, text]) => html`<option value=${key} selected=${key === value}>${text}</option>`,
+            )}
         </select>
     </label>`;
 }

@@ -18,15 +18,19 @@ export function strand_geometry(strands) {
 
 /** Variants of the shader that these strands need. */
 export function shader_defines(strands) {
-    const count = strands.sh_bands ** 2, defines = { SH_COUNT: count, SH_VECTORS: Math.ceil(count / 4) };
+    const count = strands.sh_bands ** 2,
+        defines = { SH_COUNT: count, SH_VECTORS: Math.ceil(count / 4) };
     return strands.has_cone ? { ...defines, CONE: 1 } : defines;
 }
 
 /** All maps of a bake: layers of an array of atlases. Throws an Error in words when the card cannot hold them. */
 export function map_texture(maps, renderer) {
-    const gl = renderer.getContext(), most_layers = gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);
+    const gl = renderer.getContext(),
+        most_layers = gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);
     if (maps.count > most_layers)
-        throw new Error(`This browser draws at most ${most_layers} maps; the bake has ${maps.count}. Bake fewer specular maps.`);
+        throw new Error(
+            `This browser draws at most ${most_layers} maps; the bake has ${maps.count}. Bake fewer specular maps.`,
+        );
     const { data, width, height, layers } = cube_atlas(maps.texels, maps.face_size, maps.count);
     const texture = new THREE.DataArrayTexture(data, width, height, layers);
     texture.type = THREE.HalfFloatType;
@@ -62,13 +66,16 @@ function halves(array, size) {
     return made;
 }
 
-// `count` halves a vertex, as vectors of four; what is left over reads as 0, 0, 1, and the light's harmonics are 0 there.
+// `count` halves a vertex, as vectors of four; what is left over reads as 0, 0, 1, and the light's harmonics are 0
+// there.
 function add_harmonics(geometry, array, count) {
     const buffer = let_go(new THREE.InterleavedBuffer(array, count));
     buffer.isFloat16BufferAttribute = true;
     for (let first = 0; first < count; first += 4)
-        geometry.setAttribute(`sh${first / 4}`,
-            new THREE.InterleavedBufferAttribute(buffer, Math.min(4, count - first), first));
+        geometry.setAttribute(
+            `sh${first / 4}`,
+            new THREE.InterleavedBufferAttribute(buffer, Math.min(4, count - first), first),
+        );
 }
 
 function let_go(buffer) {

@@ -12,7 +12,9 @@ export { most_lights };
 /** Light brown hair whose strands send on six tenths of the light diffusely: the defaults of `hairbake render`. */
 export const default_look = { albedo: 0.6, color: [0.78, 0.52, 0.3], specular: 0.06 };
 
-/** What a side shows. `part`: all, diffuse, specular or transmittance; `hidden_by`: what hides lights that were added. */
+/**
+ * What a side shows. `part`: all, diffuse, specular or transmittance; `hidden_by`: what hides lights that were added.
+ */
 export const default_side = { bake: 0, part: 'all', with_transmittance: true, hidden_by: 'automatic' };
 
 export class HairView {
@@ -35,11 +37,12 @@ export class HairView {
         this.drawn = drawn;
     }
 
-    // --- what is shown; every change asks for a frame -----------------------------------------------------------------
+    // --- what is shown; every change asks for a frame ----------------------------------------------------------------
 
     /** One or two bakes of load_bake(). What earlier ones alone used leaves the card; their arrays move to it. */
     set_bakes(bakes) {
-        const strands = new Set(bakes.map(bake => bake.strands)), maps = new Set(bakes.map(bake => bake.maps));
+        const strands = new Set(bakes.map(bake => bake.strands)),
+            maps = new Set(bakes.map(bake => bake.maps));
         for (const { material } of this.#bakes) material.dispose();
         keep_only(this.#geometries, strands);
         keep_only(this.#textures, maps);
@@ -86,7 +89,7 @@ export class HairView {
         this.request_frame();
     }
 
-    // --- pictures -----------------------------------------------------------------------------------------------------
+    // --- pictures ----------------------------------------------------------------------------------------------------
 
     request_frame() {
         this.#request ||= requestAnimationFrame(() => {
@@ -98,7 +101,8 @@ export class HairView {
     /** Draws now and waits for the card: the time is that of the whole frame. */
     draw() {
         if (!this.#bakes.length) return;
-        const begin = performance.now(), gl = this.renderer.getContext();
+        const begin = performance.now(),
+            gl = this.renderer.getContext();
         this.#draw_to(null);
         gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
         this.drawn(performance.now() - begin);
@@ -118,7 +122,8 @@ export class HairView {
     /** The picture as a PNG on `background`, a CSS colour: a Blob. */
     screenshot(background) {
         this.draw();
-        const source = this.renderer.domElement, copy = document.createElement('canvas');
+        const source = this.renderer.domElement,
+            copy = document.createElement('canvas');
         copy.width = source.width;
         copy.height = source.height;
         const context = copy.getContext('2d');
@@ -130,9 +135,11 @@ export class HairView {
 
     /** Stops that bring the brightest tenth of the hair to a bright but unclipped tone (core/output/tone.h). */
     automatic_stops() {
-        const pixels = this.linear_pixels(192, 144), luminances = [];
+        const pixels = this.linear_pixels(192, 144),
+            luminances = [];
         for (let i = 0; i < pixels.length; i += 4)
-            if (pixels[i + 3] > 0) luminances.push(0.2126 * pixels[i] + 0.7152 * pixels[i + 1] + 0.0722 * pixels[i + 2]);
+            if (pixels[i + 3] > 0)
+                luminances.push(0.2126 * pixels[i] + 0.7152 * pixels[i + 1] + 0.0722 * pixels[i + 2]);
         const sorted = Float64Array.from(luminances).sort();
         const tenth = sorted[sorted.length - 1 - Math.floor(sorted.length / 10)];
         return tenth > 0 ? Math.log2(0.35 / tenth) : 0;
@@ -152,10 +159,11 @@ export class HairView {
         this.renderer.forceContextLoss();
     }
 
-    // ------------------------------------------------------------------------------------------------------------------
+    // -----------------------------------------------------------------------------------------------------------------
 
     #bake_on_card(bake) {
-        const { strands, maps } = bake, defines = shader_defines(strands);
+        const { strands, maps } = bake,
+            defines = shader_defines(strands);
         if (!this.#textures.has(maps)) this.#textures.set(maps, map_texture(maps, this.renderer));
         if (!this.#geometries.has(strands)) this.#geometries.set(strands, strand_geometry(strands));
         const material = new THREE.RawShaderMaterial({
@@ -178,7 +186,9 @@ export class HairView {
     }
 
     #draw_to(target) {
-        const size = target ? new THREE.Vector2(target.width, target.height) : this.renderer.getSize(new THREE.Vector2());
+        const size = target
+            ? new THREE.Vector2(target.width, target.height)
+            : this.renderer.getSize(new THREE.Vector2());
         const part = Math.floor(size.x / this.#sides.length);
         this.renderer.setRenderTarget(target);
         this.#look_through(target, 0, size.x, size.y);
@@ -203,9 +213,11 @@ export class HairView {
     }
 
     #set_uniforms(uniforms, side, defines, linear) {
-        const { albedo, color, specular } = this.#look, edit = this.#edit;
+        const { albedo, color, specular } = this.#look,
+            edit = this.#edit;
         const set = (name, value) => (uniforms[name].value = value);
-        const kd = side.part === 'specular' ? 0 : albedo / Math.PI ** 2, ks = side.part === 'diffuse' ? 0 : specular;
+        const kd = side.part === 'specular' ? 0 : albedo / Math.PI ** 2,
+            ks = side.part === 'diffuse' ? 0 : specular;
         set('u_kd', new THREE.Vector3(...color).multiplyScalar(kd));
         set('u_ks', new THREE.Vector3(ks, ks, ks));
         set('u_apply_transmittance', side.with_transmittance);
@@ -231,11 +243,23 @@ function keep_only(resources, wanted) {
 function uniforms_of({ maps }, texture) {
     const vectors = (count, Type) => Array.from({ length: count }, () => new Type());
     const values = {
-        u_maps: texture, u_map_scale: maps.scale, u_face_size: maps.face_size, u_intervals: maps.count - 2,
-        u_exponent: maps.exponent, u_to_maps: new THREE.Matrix3(), u_map_gain: null, u_kd: null, u_ks: null,
-        u_apply_transmittance: true, u_show_transmittance: false, u_linear: false, u_display_gain: 1,
-        u_lights: 0, u_hidden_by: 0,
-        u_light_direction: vectors(most_lights, THREE.Vector3), u_light_irradiance: vectors(most_lights, THREE.Vector3),
+        u_maps: texture,
+        u_map_scale: maps.scale,
+        u_face_size: maps.face_size,
+        u_intervals: maps.count - 2,
+        u_exponent: maps.exponent,
+        u_to_maps: new THREE.Matrix3(),
+        u_map_gain: null,
+        u_kd: null,
+        u_ks: null,
+        u_apply_transmittance: true,
+        u_show_transmittance: false,
+        u_linear: false,
+        u_display_gain: 1,
+        u_lights: 0,
+        u_hidden_by: 0,
+        u_light_direction: vectors(most_lights, THREE.Vector3),
+        u_light_irradiance: vectors(most_lights, THREE.Vector3),
         u_light_harmonics: vectors(4 * most_lights, THREE.Vector4),
     };
     return Object.fromEntries(Object.entries(values).map(([name, value]) => [name, { value }]));

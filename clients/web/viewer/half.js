@@ -1,7 +1,8 @@
 // Half floats (IEEE binary16) as bits.
 
 export function from_half(bits) {
-    const exponent = (bits >> 10) & 31, mantissa = bits & 1023;
+    const exponent = (bits >> 10) & 31,
+        mantissa = bits & 1023;
     let magnitude;
     if (exponent === 31) magnitude = mantissa ? NaN : Infinity;
     else magnitude = exponent ? (1 + mantissa / 1024) * 2 ** (exponent - 15) : mantissa * 2 ** -24;
@@ -10,7 +11,8 @@ export function from_half(bits) {
 
 /** The nearest half, of two equally near the even one. */
 export function to_half(value) {
-    const sign = value < 0 ? 0x8000 : 0, magnitude = Math.abs(value);
+    const sign = value < 0 ? 0x8000 : 0,
+        magnitude = Math.abs(value);
     if (Number.isNaN(value)) return 0x7e00;
     if (magnitude >= 65520) return sign | 0x7c00;
     const exponent = Math.max(Math.floor(Math.log2(magnitude)), -14);
@@ -18,6 +20,7 @@ export function to_half(value) {
 }
 
 function round_to_even(value) {
-    const whole = Math.floor(value), rest = value - whole;
+    const whole = Math.floor(value),
+        rest = value - whole;
     return whole + (rest > 0.5 || (rest === 0.5 && whole % 2 === 1) ? 1 : 0);
 }

@@ -28,7 +28,9 @@ export function rotation_matrix(degrees) {
     ];
 }
 
-/** Angles whose rotation_matrix is `m`, to 1e-9 degrees; where Y is turned by 90 degrees, X and Z are one: Z is 0 then. */
+/**
+ * Angles whose rotation_matrix is `m`, to 1e-9 degrees; where Y is turned by 90 degrees, X and Z are one: Z is 0 then.
+ */
 export function rotation_degrees(m) {
     const y = Math.atan2(-m[2][0], Math.hypot(m[2][1], m[2][2]));
     const level = Math.hypot(m[2][1], m[2][2]) > 1e-9;
@@ -47,7 +49,8 @@ export function transform(m, [x, y, z]) {
 
 /** Towards a light: unit vector. */
 export function light_direction({ azimuth_deg, elevation_deg }) {
-    const azimuth = (azimuth_deg * Math.PI) / 180, elevation = (elevation_deg * Math.PI) / 180;
+    const azimuth = (azimuth_deg * Math.PI) / 180,
+        elevation = (elevation_deg * Math.PI) / 180;
     const level = Math.cos(elevation);
     return [level * Math.sin(azimuth), Math.sin(elevation), level * Math.cos(azimuth)];
 }
@@ -61,14 +64,19 @@ export function gain_of(edit) {
     return edit.tint.map(factor => factor * 2 ** edit.exposure_stops);
 }
 
-/** The request that bakes `request`'s lighting as edited. Throws an Error in words where the service would refuse it. */
+/**
+ * The request that bakes `request`'s lighting as edited. Throws an Error in words where the service would refuse it.
+ */
 export function compose_request(request, edit) {
     const before = { ...no_edit(), ...request.irradiance };
     const turned = edit.rotation_deg.some(angle => angle % 360 !== 0);
-    const rotation = rotation_matrix(edit.rotation_deg), gain = gain_of(edit);
+    const rotation = rotation_matrix(edit.rotation_deg),
+        gain = gain_of(edit);
     const irradiance = {
         ...request.irradiance,
-        rotation_deg: turned ? rotation_degrees(multiply(rotation, rotation_matrix(before.rotation_deg))) : before.rotation_deg,
+        rotation_deg: turned
+            ? rotation_degrees(multiply(rotation, rotation_matrix(before.rotation_deg)))
+            : before.rotation_deg,
         exposure_stops: tidy(before.exposure_stops + edit.exposure_stops),
         tint: before.tint.map((factor, i) => tidy(factor * edit.tint[i])),
         lights: [

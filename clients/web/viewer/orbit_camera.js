@@ -14,7 +14,8 @@ export class OrbitCamera {
 
     /** Unit axes, right-handed; `backward` points from the scene to the eye. */
     axes() {
-        const azimuth = (this.azimuth_deg * Math.PI) / 180, elevation = (this.elevation_deg * Math.PI) / 180;
+        const azimuth = (this.azimuth_deg * Math.PI) / 180,
+            elevation = (this.elevation_deg * Math.PI) / 180;
         const right = [Math.cos(azimuth), 0, -Math.sin(azimuth)];
         const level = Math.cos(elevation);
         const backward = [level * Math.sin(azimuth), Math.sin(elevation), level * Math.cos(azimuth)];
@@ -27,7 +28,8 @@ export class OrbitCamera {
 
     /** As near as all of the box [[low], [high]] is in the picture, with a small margin; the angles stay. */
     frame([low, high], aspect) {
-        const { right, up, backward } = this.axes(), tangent = this.tangent();
+        const { right, up, backward } = this.axes(),
+            tangent = this.tangent();
         this.target = add(low, high).map(x => x / 2);
         const needed = corners(low, high).map(corner => {
             const from_target = add(corner, this.target, -1);
@@ -48,7 +50,8 @@ export class OrbitCamera {
 
     /** Moves what is in the middle, in heights of the picture. */
     pan(x, y) {
-        const { right, up } = this.axes(), height = 2 * this.distance * this.tangent();
+        const { right, up } = this.axes(),
+            height = 2 * this.distance * this.tangent();
         this.target = add(add(this.target, right, -x * height), up, -y * height);
     }
 
@@ -59,7 +62,8 @@ export class OrbitCamera {
 
     /** Sets a three.js PerspectiveCamera; near and far hold the box. */
     apply(camera, [low, high], aspect) {
-        const { right, up, backward } = this.axes(), eye = this.eye();
+        const { right, up, backward } = this.axes(),
+            eye = this.eye();
         const depths = corners(low, high).map(corner => -dot(add(corner, eye, -1), backward));
         camera.fov = this.fov_deg;
         camera.aspect = aspect;
@@ -67,8 +71,23 @@ export class OrbitCamera {
         camera.near = Math.max(Math.min(...depths) * 0.99, camera.far * 1e-4);
         camera.matrixAutoUpdate = false;
         camera.matrix.set(
-            right[0], up[0], backward[0], eye[0], right[1], up[1], backward[1], eye[1],
-            right[2], up[2], backward[2], eye[2], 0, 0, 0, 1);
+            right[0],
+            up[0],
+            backward[0],
+            eye[0],
+            right[1],
+            up[1],
+            backward[1],
+            eye[1],
+            right[2],
+            up[2],
+            backward[2],
+            eye[2],
+            0,
+            0,
+            0,
+            1,
+        );
         camera.matrixWorldNeedsUpdate = true;
         camera.updateProjectionMatrix();
     }

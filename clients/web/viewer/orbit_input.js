@@ -1,4 +1,5 @@
-// Pointer, wheel and keys move the camera. One pointer orbits, with shift or the second button it moves; two pinch and move.
+// Pointer, wheel and keys move the camera. One pointer orbits, with shift or the second button it moves; two pinch and
+// move.
 
 const degrees_a_height = 180; // of a drag over the whole picture's height
 const step_deg = 5;
@@ -13,7 +14,8 @@ export function listen_for_orbit(element, camera, moved, frame) {
         },
         pointermove: event => {
             if (!pointers.has(event.pointerId)) return;
-            const before = [...pointers.values()], last = pointers.get(event.pointerId);
+            const before = [...pointers.values()],
+                last = pointers.get(event.pointerId);
             pointers.set(event.pointerId, point_of(event));
             if (before.length === 1) drag(camera, element, last, point_of(event), event);
             else pinch(camera, element, before, [...pointers.values()]);
@@ -33,7 +35,8 @@ export function listen_for_orbit(element, camera, moved, frame) {
             moved();
         },
     };
-    for (const [name, listener] of Object.entries(listeners)) element.addEventListener(name, listener, { passive: false });
+    for (const [name, listener] of Object.entries(listeners))
+        element.addEventListener(name, listener, { passive: false });
     return () => {
         for (const [name, listener] of Object.entries(listeners)) element.removeEventListener(name, listener);
     };
@@ -44,7 +47,8 @@ function point_of(event) {
 }
 
 function drag(camera, element, from, to, event) {
-    const x = (to[0] - from[0]) / element.clientHeight, y = (to[1] - from[1]) / element.clientHeight;
+    const x = (to[0] - from[0]) / element.clientHeight,
+        y = (to[1] - from[1]) / element.clientHeight;
     if (event.shiftKey || event.buttons & 2) camera.pan(x, -y);
     else camera.orbit(-x * degrees_a_height, y * degrees_a_height);
 }

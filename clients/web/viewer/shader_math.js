@@ -17,7 +17,10 @@ export const sine_polynomial = [0.999999977, -0.166666476, 0.00833289983, -0.000
 
 /** GLSL of a polynomial in `x` by Horner's rule. */
 export function glsl_polynomial(coefficients, x) {
-    return coefficients.reduceRight((inner, c) => (inner ? `(${glsl_number(c)} + ${x} * ${inner})` : glsl_number(c)), '');
+    return coefficients.reduceRight(
+        (inner, c) => (inner ? `(${glsl_number(c)} + ${x} * ${inner})` : glsl_number(c)),
+        '',
+    );
 }
 
 export function glsl_number(value) {
@@ -29,14 +32,28 @@ export function glsl_number(value) {
  * Condon-Shortley phase (core/base/spherical_harmonics.h).
  */
 export function harmonics([x, y, z]) {
-    const root = Math.sqrt, pi = Math.PI;
-    const c1 = root(3 / (4 * pi)), c2 = root(15 / (4 * pi)), c3 = root(35 / (32 * pi)), d3 = root(21 / (32 * pi));
+    const root = Math.sqrt,
+        pi = Math.PI;
+    const c1 = root(3 / (4 * pi)),
+        c2 = root(15 / (4 * pi)),
+        c3 = root(35 / (32 * pi)),
+        d3 = root(21 / (32 * pi));
     return [
         root(1 / (4 * pi)),
-        c1 * y, c1 * z, c1 * x,
-        c2 * x * y, c2 * y * z, root(5 / (16 * pi)) * (3 * z * z - 1), c2 * x * z, (c2 / 2) * (x * x - y * y),
-        c3 * y * (3 * x * x - y * y), root(105 / (4 * pi)) * x * y * z, d3 * y * (5 * z * z - 1),
-        root(7 / (16 * pi)) * z * (5 * z * z - 3), d3 * x * (5 * z * z - 1),
-        root(105 / (16 * pi)) * z * (x * x - y * y), c3 * x * (x * x - 3 * y * y),
+        c1 * y,
+        c1 * z,
+        c1 * x,
+        c2 * x * y,
+        c2 * y * z,
+        root(5 / (16 * pi)) * (3 * z * z - 1),
+        c2 * x * z,
+        (c2 / 2) * (x * x - y * y),
+        c3 * y * (3 * x * x - y * y),
+        root(105 / (4 * pi)) * x * y * z,
+        d3 * y * (5 * z * z - 1),
+        root(7 / (16 * pi)) * z * (5 * z * z - 3),
+        d3 * x * (5 * z * z - 1),
+        root(105 / (16 * pi)) * z * (x * x - y * y),
+        c3 * x * (x * x - 3 * y * y),
     ];
 }

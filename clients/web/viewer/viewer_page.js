@@ -1,8 +1,8 @@
 // The page that shows hair under a bake's light while the light is edited.
 //
 //   ViewerPage({ left, right, api }): left and right are ids of bakes (right may be missing);
-//   api.file_url(id, name) is the address of a bake's file; api.json(path) gets, api.post(path, object) posts JSON, both
-//   with paths from the root ("/v1/bakes/...") and an Error in words when the service refuses.
+//   api.file_url(id, name) is the address of a bake's file; api.json(path) gets JSON, api.post(path, object) posts it:
+//   both take paths from the root ("/v1/bakes/...") and throw an Error in words when the service refuses.
 //
 // What it holds on the card, its loop and what it is fetching end when it is unmounted.
 import { html, useEffect, useRef, useState } from '../vendor/preact.js';
@@ -18,7 +18,9 @@ const css = new URL('viewer.css', import.meta.url).href;
 const hint = 'Drag or arrow keys: orbit. Shift with either: move. Wheel, pinch, plus and minus: distance. F: frame.';
 
 export function ViewerPage({ left, right, api }) {
-    const canvas = useRef(null), view = useRef(null), stage = useRef(null);
+    const canvas = useRef(null),
+        view = useRef(null),
+        stage = useRef(null);
     const [bakes, set_bakes] = useState([]);
     const [status, set_status] = useState('');
     const [problem, set_problem] = useState(null);
@@ -50,12 +52,13 @@ export function ViewerPage({ left, right, api }) {
     useEffect(() => view.current?.set_lighting(edit), [edit]);
     useEffect(() => view.current?.set_display_stops(stops), [stops]);
 
-    const names = bakes.map((bake, i) => `${['Left', 'Right'][i]}: ${bake.id.slice(0, 8)}, ${bake.maps.count - 1} specular maps`);
+    const names = bakes.map(bake => `${bake.id.slice(0, 8)}, ${bake.maps.count - 1} specular maps`);
     const ready = bakes.length > 0;
     return html`<link rel="stylesheet" href=${css} />
         <section class="viewer" aria-label="Viewer">
             <div class="viewer-stage" ref=${stage}>
-                <canvas ref=${canvas} tabindex="0" role="application" aria-label="Picture of the hair" aria-describedby="viewer-hint">
+                <canvas ref=${canvas} tabindex="0" role="application" aria-label="Picture of the hair"
+                    aria-describedby="viewer-hint">
                 </canvas>
                 ${ready && sides.length > 1 && html`<span class="viewer-divider"></span>`}
                 ${ready && html`<${Captions} sides=${sides} names=${names} />`}
@@ -66,12 +69,17 @@ export function ViewerPage({ left, right, api }) {
                 <p id="viewer-hint" class="viewer-note">${hint}</p>
                 <div class="viewer-buttons">
                     <button type="button" disabled=${!ready} onClick=${() => view.current.frame_hair()}>Frame</button>
-                    <button type="button" disabled=${!ready} onClick=${() => save_screenshot(view.current, canvas.current, left)}>
+                    <button type="button" disabled=${!ready}
+                        onClick=${() => save_screenshot(view.current, canvas.current, left)}>
                         Screenshot
                     </button>
                 </div>
-                <p class="viewer-note">Frame time: <output>${frame_ms === null ? '–' : `${frame_ms.toFixed(1)} ms`}</output></p>
-                ${ready && html`
+                <p class="viewer-note">
+                    Frame time: <output>${frame_ms === null ? '–' : `${frame_ms.toFixed(1)} ms`}</output>
+                </p>
+                ${
+                    ready &&
+                    html`
                     <${SidesPanel} sides=${sides} names=${names} on=${set_sides} />
                     <${SkyPanel} edit=${edit} on=${set_edit} />
                     <${LightsPanel} lights=${edit.lights} way=${way} ways=${ways_of(bakes)} on_way=${set_way}
@@ -80,19 +88,22 @@ export function ViewerPage({ left, right, api }) {
                         <legend>Bake this lighting</legend>
                         <${BakeOrder} api=${api} old=${left} label="Bake this lighting" disabled=${!is_edited(edit)}
                             request=${() => compose_request(bakes[0].request, edit)} />
-                        <button type="button" class="secondary" disabled=${!is_edited(edit)} onClick=${() => set_edit(no_edit())}>
+                        <button type="button" class="secondary" disabled=${!is_edited(edit)}
+                            onClick=${() => set_edit(no_edit())}>
                             Undo the edit
                         </button>
                     </fieldset>
                     <${HairPanel} look=${look} exponent=${bakes[0].maps.exponent} on=${set_look} />
                     <fieldset>
                         <legend>Screen</legend>
-                        <${Slider} label="Brightness of the picture alone" value=${stops} min="-12" max="12" step="0.1" unit="stops"
-                            on=${set_stops} />
-                        <button type="button" class="secondary" onClick=${() => set_stops(view.current.automatic_stops())}>
+                        <${Slider} label="Brightness of the picture alone" value=${stops} min="-12" max="12" step="0.1"
+                            unit="stops" on=${set_stops} />
+                        <button type="button" class="secondary"
+                            onClick=${() => set_stops(view.current.automatic_stops())}>
                             Automatic
                         </button>
-                    </fieldset>`}
+                    </fieldset>`
+                }
             </form>
         </section>`;
 }
@@ -110,7 +121,12 @@ function mount_view(canvas, stage, holder, set_frame_ms, set_problem) {
     const observer = new ResizeObserver(fit);
     observer.observe(stage);
     fit();
-    const deaf = listen_for_orbit(canvas, view.camera, () => view.request_frame(), () => view.frame_hair());
+    const deaf = listen_for_orbit(
+        canvas,
+        view.camera,
+        () => view.request_frame(),
+        () => view.frame_hair(),
+    );
     return () => {
         observer.disconnect();
         deaf();
@@ -134,7 +150,8 @@ async function load_all(ids, api, before, signal, { set_status, set_problem, sho
 
 // What can hide a light that is added, with the bakes shown.
 function ways_of(bakes) {
-    const harmonics = bakes.some(bake => bake.strands.sh_bands > 0), cone = bakes.some(bake => bake.strands.has_cone);
+    const harmonics = bakes.some(bake => bake.strands.sh_bands > 0),
+        cone = bakes.some(bake => bake.strands.has_cone);
     return ['automatic', ...(harmonics ? ['harmonics'] : []), ...(cone ? ['cone'] : []), 'average'];
 }
 
@@ -149,7 +166,9 @@ async function save_screenshot(view, canvas, id) {
 
 function Captions({ sides, names }) {
     const parts = { all: '', diffuse: ', diffuse', specular: ', specular', transmittance: ', A' };
-    const text = side => names[side.bake].replace(/^\w+: /, '') + parts[side.part] +
+    const text = side =>
+        names[side.bake] +
+        parts[side.part] +
         (side.with_transmittance || side.part === 'transmittance' ? '' : ', without A');
     return html`<div class="viewer-captions">${sides.map(side => html`<span>${text(side)}</span>`)}</div>`;
 }
@@ -157,6 +176,9 @@ function Captions({ sides, names }) {
 function Problem({ problem, api }) {
     return html`<div class="viewer-problem" role="alert">
         <p>${problem.message}</p>
-        ${problem.request && html`<${BakeOrder} api=${api} label='Bake it with "raw"' request=${() => problem.request} />`}
+        ${
+            problem.request &&
+            html`<${BakeOrder} api=${api} label='Bake it with "raw"' request=${() => problem.request} />`
+        }
     </div>`;
 }

@@ -26,7 +26,8 @@ export function as_half(x) {
 
 /** `count` maps of n x n texels, uniform in [0, 1]. {maps, files} */
 export function random_maps(random, n, count, { scale, exponent }) {
-    const bits = new Uint16Array(count * 6 * n * n * 4), values = new Float64Array(bits.length);
+    const bits = new Uint16Array(count * 6 * n * n * 4),
+        values = new Float64Array(bits.length);
     for (let i = 0; i < bits.length; i++) {
         const half = as_half(i % 4 === 3 ? 1 : random());
         bits[i] = half.bits;
@@ -37,12 +38,16 @@ export function random_maps(random, n, count, { scale, exponent }) {
         return [values[at], values[at + 1], values[at + 2]];
     };
     const page = { content: 'hairbake irradiance maps', shape: [count, 6, n, n, 4], scale, exponent };
-    return { maps: new Maps(n, count, value), files: { 'maps.json': JSON.stringify(page), 'maps.f16': Buffer.from(bits.buffer) } };
+    return {
+        maps: new Maps(n, count, value),
+        files: { 'maps.json': JSON.stringify(page), 'maps.f16': Buffer.from(bits.buffer) },
+    };
 }
 
 /** Files of strands; `vertices` are {position, tangent, average, sh, cone} of numbers, `begin` where strands begin. */
 export function strand_files(vertices, begin) {
-    const arrays = [], pieces = [];
+    const arrays = [],
+        pieces = [];
     let offset = 0;
     const add = (name, array) => {
         const padding = (8 - (offset % 8)) % 8;
@@ -54,13 +59,26 @@ export function strand_files(vertices, begin) {
     const halves = of => Uint16Array.from(vertices.flatMap(of), x => as_half(x).bits);
     add('positions', Float32Array.from(vertices.flatMap(v => v.position)));
     add('strand_begin', Uint32Array.from(begin));
-    add('tangent_and_transmittance', halves(v => [...v.tangent, v.average]));
-    add('transmittance_sh', halves(v => v.sh));
-    add('bent_cone', halves(v => v.cone));
+    add(
+        'tangent_and_transmittance',
+        halves(v => [...v.tangent, v.average]),
+    );
+    add(
+        'transmittance_sh',
+        halves(v => v.sh),
+    );
+    add(
+        'bent_cone',
+        halves(v => v.cone),
+    );
     const bounds = [Math.min, Math.max].map(of => [0, 1, 2].map(axis => of(...vertices.map(v => v.position[axis]))));
     const page = {
-        content: 'hairbake strands', vertices: vertices.length, strands: begin.length - 1, bounds,
-        sh_bands: Math.sqrt(vertices[0].sh.length), arrays,
+        content: 'hairbake strands',
+        vertices: vertices.length,
+        strands: begin.length - 1,
+        bounds,
+        sh_bands: Math.sqrt(vertices[0].sh.length),
+        arrays,
     };
     return { 'strands.json': JSON.stringify(page), 'strands.bin': Buffer.concat(pieces) };
 }
@@ -73,7 +91,9 @@ export function bake_service(bakes) {
         const { files, request = {} } = bakes[id];
         if (name) return { type: 'application/octet-stream', body: files[name] };
         const view = {
-            id, state: 'done', request: { hair: 'sha256:0', environment: 'sha256:1', outputs: ['raw'], ...request },
+            id,
+            state: 'done',
+            request: { hair: 'sha256:0', environment: 'sha256:1', outputs: ['raw'], ...request },
             files: Object.keys(files).map(file => ({ name: file, sha256: `${id} ${file}` })),
         };
         return { type: 'application/json', body: JSON.stringify(view) };

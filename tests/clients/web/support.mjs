@@ -12,10 +12,14 @@ const { chromium } = createRequire(join(tests, 'npm/package.json'))('playwright-
 const web = resolve(tests, '../clients/web');
 
 const types = {
-    '.html': 'text/html; charset=utf-8', '.js': 'text/javascript', '.css': 'text/css', '.json': 'application/json',
+    '.html': 'text/html; charset=utf-8',
+    '.js': 'text/javascript',
+    '.css': 'text/css',
+    '.json': 'application/json',
     '.svg': 'image/svg+xml',
 };
-const policy = "default-src 'self'; img-src 'self' blob: data:; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
+const policy =
+    "default-src 'self'; img-src 'self' blob: data:; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
 
 /** The files that the service serves, in a folder of their own. {folder, remove()} */
 export function stage() {
@@ -42,10 +46,11 @@ export async function serve(folder, answer = () => undefined) {
     await new Promise(listening => server.listen(0, '127.0.0.1', listening));
     return {
         origin: `http://127.0.0.1:${server.address().port}`,
-        close: () => new Promise(closed => {
-            server.close(closed);
-            server.closeAllConnections();
-        }),
+        close: () =>
+            new Promise(closed => {
+                server.close(closed);
+                server.closeAllConnections();
+            }),
     };
 }
 
@@ -66,9 +71,18 @@ export function open_browser() {
     return chromium.launch({
         executablePath: '/usr/bin/chromium',
         headless: true,
-        args: ['--headless', '--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking',
-            '--disable-component-update', '--disable-sync', '--use-gl=angle', '--use-angle=swiftshader',
-            '--enable-unsafe-swiftshader'],
+        args: [
+            '--headless',
+            '--no-sandbox',
+            '--disable-quic',
+            '--no-first-run',
+            '--disable-background-networking',
+            '--disable-component-update',
+            '--disable-sync',
+            '--use-gl=angle',
+            '--use-angle=swiftshader',
+            '--enable-unsafe-swiftshader',
+        ],
     });
 }
 

@@ -4,14 +4,20 @@ import { after, before, test } from 'node:test';
 import { as_half, bake_service, generator, random_maps, strand_files } from './raw_files.mjs';
 import { open_browser, open_page, serve, stage } from './support.mjs';
 
-const strand_count = 50000, points = 30; // 1.5 million vertices
+const strand_count = 50000,
+    points = 30; // 1.5 million vertices
 
-/** Straight strands that hang from a square: arrays written directly, since objects of 1.5 M vertices take a gigabyte. */
+/**
+ * Straight strands that hang from a square: arrays written directly, since objects of 1.5 M vertices take a gigabyte.
+ */
 function large_files(random) {
-    const vertices = strand_count * points, positions = new Float32Array(3 * vertices), halves = new Uint16Array(4 * vertices);
+    const vertices = strand_count * points,
+        positions = new Float32Array(3 * vertices),
+        halves = new Uint16Array(4 * vertices);
     const [zero, down, share] = [0, -1, 0.5].map(x => as_half(x).bits);
     for (let s = 0; s < strand_count; s++) {
-        const x = 10 * random() - 5, z = 10 * random() - 5;
+        const x = 10 * random() - 5,
+            z = 10 * random() - 5;
         for (let i = 0; i < points; i++) {
             const v = s * points + i;
             positions.set([x, -i / 3, z], 3 * v);
@@ -19,7 +25,8 @@ function large_files(random) {
         }
     }
     const begin = Uint32Array.from({ length: strand_count + 1 }, (_, s) => s * points);
-    const arrays = [], pieces = [];
+    const arrays = [],
+        pieces = [];
     let offset = 0;
     for (const [name, array] of Object.entries({ positions, tangent_and_transmittance: halves, strand_begin: begin })) {
         arrays.push({ name, offset, bytes: array.byteLength });
@@ -27,16 +34,31 @@ function large_files(random) {
         offset += array.byteLength;
     }
     const page = {
-        content: 'hairbake strands', vertices, strands: strand_count, bounds: [[-5, -10, -5], [5, 0, 5]], sh_bands: 0, arrays,
+        content: 'hairbake strands',
+        vertices,
+        strands: strand_count,
+        bounds: [
+            [-5, -10, -5],
+            [5, 0, 5],
+        ],
+        sh_bands: 0,
+        arrays,
     };
     return { 'strands.json': JSON.stringify(page), 'strands.bin': Buffer.concat(pieces) };
 }
 
 function small_files(random) {
     const vertex = () => ({
-        position: [random(), random(), random()], tangent: [0, 1, 0], average: 0.5, sh: [1, 0, 0, 0], cone: [0, 1, 0, 1],
+        position: [random(), random(), random()],
+        tangent: [0, 1, 0],
+        average: 0.5,
+        sh: [1, 0, 0, 0],
+        cone: [0, 1, 0, 1],
     });
-    return strand_files(Array.from({ length: 100 }, vertex), Array.from({ length: 11 }, (_, s) => 10 * s));
+    return strand_files(
+        Array.from({ length: 100 }, vertex),
+        Array.from({ length: 11 }, (_, s) => 10 * s),
+    );
 }
 
 let site, server, browser, page;
@@ -46,17 +68,24 @@ before(async () => {
     const maps = () => random_maps(random, 8, 34, { scale: 1, exponent: 64 }).files;
     const shared = small_files(random);
     site = stage();
-    server = await serve(site.folder, bake_service({
-        one: { files: { ...shared, ...maps() } }, two: { files: { ...small_files(random), ...maps() } },
-        large: { files: { ...large_files(random), ...maps() } },
-    }));
+    server = await serve(
+        site.folder,
+        bake_service({
+            one: { files: { ...shared, ...maps() } },
+            two: { files: { ...small_files(random), ...maps() } },
+            large: { files: { ...large_files(random), ...maps() } },
+        }),
+    );
     browser = await open_browser();
     page = await open_page(browser);
     await page.goto(`${server.origin}/viewer/viewer.css`);
     await page.evaluate(async () => {
         const { load_bake } = await import('/viewer/bake_files.js');
         const { HairView } = await import('/viewer/hair_view.js');
-        const api = { json: async path => (await fetch(path)).json(), file_url: (id, name) => `/v1/bakes/${id}/files/${name}` };
+        const api = {
+            json: async path => (await fetch(path)).json(),
+            file_url: (id, name) => `/v1/bakes/${id}/files/${name}`,
+        };
         window.load = (id, known = []) => load_bake(api, id, { known });
         window.view = new HairView(document.createElement('canvas'), { antialias: false });
         window.view.resize(640, 480);
@@ -68,16 +97,20 @@ after(async () => {
     site?.remove();
 });
 
-test('A bake takes one buffer geometry and one texture, two bakes two, and a change of model frees what it replaces', async () => {
+test('A bake takes one geometry and one texture, and a change of model frees what it replaces', async () => {
     const found = await page.evaluate(async () => {
-        const { load, view } = window, memory = [];
+        const { load, view } = window,
+            memory = [];
         const show = bakes => {
             view.set_bakes(bakes);
-            view.set_sides(bakes.map((_, i) => ({ bake: i, part: 'all', with_transmittance: true, hidden_by: 'average' })));
+            view.set_sides(
+                bakes.map((_, i) => ({ bake: i, part: 'all', with_transmittance: true, hidden_by: 'average' })),
+            );
             view.draw();
             memory.push(view.memory());
         };
-        const one = await load('one'), two = await load('two');
+        const one = await load('one'),
+            two = await load('two');
         show([one]);
         show([one, two]);
         show([two]);
@@ -85,7 +118,9 @@ test('A bake takes one buffer geometry and one texture, two bakes two, and a cha
         return memory;
     });
     assert.deepEqual(found, [
-        { geometries: 1, textures: 1 }, { geometries: 2, textures: 2 }, { geometries: 1, textures: 1 },
+        { geometries: 1, textures: 1 },
+        { geometries: 2, textures: 2 },
+        { geometries: 1, textures: 1 },
         { geometries: 0, textures: 0 },
     ]);
 });
@@ -94,7 +129,8 @@ test('A bake that is already there is not fetched again, and its arrays have lef
     const requests = [];
     page.on('request', request => requests.push(new URL(request.url()).pathname));
     const kept = await page.evaluate(async () => {
-        const { load, view } = window, bake = await load('one');
+        const { load, view } = window,
+            bake = await load('one');
         view.set_bakes([bake]);
         view.draw();
         const again = await load('one', [bake]);
@@ -104,7 +140,10 @@ test('A bake that is already there is not fetched again, and its arrays have lef
     });
     assert.deepEqual(kept, { same: true, arrays: 0 });
     const bulk = requests.filter(path => /strands\.bin|maps\.f16/.test(path));
-    assert.deepEqual(bulk.map(path => path.split('/').pop()), ['strands.bin', 'maps.f16']);
+    assert.deepEqual(
+        bulk.map(path => path.split('/').pop()),
+        ['strands.bin', 'maps.f16'],
+    );
 });
 
 test('1.5 million vertices are loaded and drawn, and their memory is freed', async t => {
@@ -114,7 +153,8 @@ test('1.5 million vertices are loaded and drawn, and their memory is freed', asy
         view.frame_hair();
         const begin = performance.now();
         view.draw();
-        const milliseconds = performance.now() - begin, pixels = view.linear_pixels(320, 240);
+        const milliseconds = performance.now() - begin,
+            pixels = view.linear_pixels(320, 240);
         const during = view.memory();
         view.set_bakes([]);
         const lit = pixels.filter((value, i) => i % 4 === 1 && value > 0 && pixels[i + 2] === 1).length;
@@ -127,6 +167,6 @@ test('1.5 million vertices are loaded and drawn, and their memory is freed', asy
     assert.deepEqual(after_all, { geometries: 0, textures: 0 });
 });
 
-test('Nothing was said on the browser\'s console', () => {
+test("Nothing was said on the browser's console", () => {
     assert.deepEqual(page.problems, []);
 });

@@ -38,15 +38,27 @@ let site, server, browser, page, posted, refusal;
 
 /** Curls round a ball: something that can be recognised in a picture. */
 function ball_of_hair(random) {
-    const vertices = [], begin = [0];
+    const vertices = [],
+        begin = [0];
     for (let s = 0; s < 400; s++) {
-        const z = 1 - (2 * (s + 0.5)) / 400, azimuth = s * 2.399963, level = Math.sqrt(1 - z * z), curl = 6 * random();
+        const z = 1 - (2 * (s + 0.5)) / 400,
+            azimuth = s * 2.399963,
+            level = Math.sqrt(1 - z * z),
+            curl = 6 * random();
         const out = [level * Math.cos(azimuth), z, level * Math.sin(azimuth)];
         for (let i = 0; i < 12; i++) {
-            const r = 3 + 0.15 * i, turn = curl + 0.5 * i;
+            const r = 3 + 0.15 * i,
+                turn = curl + 0.5 * i;
             vertices.push({
-                position: [r * out[0] + 0.1 * Math.cos(turn), r * out[1] - 0.01 * i * i, r * out[2] + 0.1 * Math.sin(turn)],
-                tangent: out, average: 0.2 + 0.07 * i, sh: [0.5 + 0.2 * i, out[1], out[2], out[0]], cone: [...out, 1.2],
+                position: [
+                    r * out[0] + 0.1 * Math.cos(turn),
+                    r * out[1] - 0.01 * i * i,
+                    r * out[2] + 0.1 * Math.sin(turn),
+                ],
+                tangent: out,
+                average: 0.2 + 0.07 * i,
+                sh: [0.5 + 0.2 * i, out[1], out[2], out[0]],
+                cone: [...out, 1.2],
             });
         }
         begin.push(vertices.length);
@@ -55,11 +67,13 @@ function ball_of_hair(random) {
 }
 
 before(async () => {
-    const random = generator(11), hair = ball_of_hair(random);
+    const random = generator(11),
+        hair = ball_of_hair(random);
     const maps = count => random_maps(random, 8, count, { scale: 1, exponent: 64 }).files;
     const request = { irradiance: { rotation_deg: [0, 30, 0], exposure_stops: 1, tint: [1, 1, 1], lights: [] } };
     const bakes = bake_service({
-        first: { files: { ...hair, ...maps(34) }, request }, second: { files: { ...hair, ...maps(10) }, request },
+        first: { files: { ...hair, ...maps(34) }, request },
+        second: { files: { ...hair, ...maps(10) }, request },
         unread: { files: { 'transmittance.npy': Buffer.alloc(1) }, request: { ...request, outputs: ['npy'] } },
         bald: { files: { ...hair, ...maps(34) }, request: { hair: null } },
         broken: { files: { ...hair, ...maps(34), 'strands.bin': Buffer.alloc(100) } },
@@ -94,32 +108,38 @@ beforeEach(() => {
 afterEach(async () => {
     const problems = page.problems.filter(problem => !/status of 4\d\d/.test(problem)); // answers that a test asks for
     await page.close();
-    assert.deepEqual(problems, [], 'on the browser\'s console');
+    assert.deepEqual(problems, [], "on the browser's console");
 });
 
 async function open(path, options) {
     page = await open_page(browser, options);
     await page.goto(`${server.origin}/#/${path}`);
     await page.waitForSelector('.viewer-captions, .viewer-problem');
-    if (await page.$('.viewer-captions')) await page.waitForFunction(() => /ms/.test(document.querySelector('.viewer-note output').value));
+    if (await page.$('.viewer-captions'))
+        await page.waitForFunction(() => /ms/.test(document.querySelector('.viewer-note output').value));
 }
 
 /** Waits until frames have stopped coming, then gives the picture on the canvas as bytes. */
 async function picture() {
-    await page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 100)))));
+    await page.evaluate(
+        () => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 100)))),
+    );
     return page.locator('.viewer canvas').screenshot();
 }
 
 const slider = label => page.getByRole('slider', { name: label });
 
-test('Hair appears with the frame\'s time, and axe finds nothing wrong, light or dark', async () => {
+test("Hair appears with the frame's time, and axe finds nothing wrong, light or dark", async () => {
     for (const colorScheme of ['light', 'dark']) {
         await open('first', { colorScheme });
         await page.getByRole('button', { name: 'Add a light' }).click();
         await page.screenshot({ path: join(pictures, `viewer_${colorScheme}.png`) });
         await page.evaluate(readFileSync(axe, 'utf8'));
         const { violations } = await page.evaluate(() => window.axe.run());
-        assert.deepEqual(violations.map(({ id, nodes }) => `${id}: ${nodes[0].html}`), []);
+        assert.deepEqual(
+            violations.map(({ id, nodes }) => `${id}: ${nodes[0].html}`),
+            [],
+        );
         if (colorScheme === 'light') await page.close();
     }
 });
@@ -184,12 +204,19 @@ test('The edited lighting is shown at once and baked as a request: turned, expos
     await page.getByRole('link', { name: 'open the new bake' }).waitFor();
     assert.equal(await page.getByRole('link', { name: 'open the new bake' }).getAttribute('href'), '#/view/new');
     assert.equal(await page.getByRole('link', { name: 'compare' }).getAttribute('href'), '#/view/first/new');
-    assert.deepEqual(posted, [{
-        hair: 'sha256:0', environment: 'sha256:1', outputs: ['raw'],
-        irradiance: {
-            rotation_deg: [0, 90, 0], exposure_stops: 1.1, tint: [1, 1, 1], lights: [{ direction: [0, 1, 0], irradiance: [4, 4, 4] }],
+    assert.deepEqual(posted, [
+        {
+            hair: 'sha256:0',
+            environment: 'sha256:1',
+            outputs: ['raw'],
+            irradiance: {
+                rotation_deg: [0, 90, 0],
+                exposure_stops: 1.1,
+                tint: [1, 1, 1],
+                lights: [{ direction: [0, 1, 0], irradiance: [4, 4, 4] }],
+            },
         },
-    }]);
+    ]);
 });
 
 test('A refusal of the service is shown as text', async () => {
@@ -210,9 +237,12 @@ test('At most eight lights are added, and a light can be removed', async () => {
     assert.ok(await add.isEnabled());
 });
 
-test('A screenshot is a PNG of the picture\'s size', async () => {
+test("A screenshot is a PNG of the picture's size", async () => {
     await open('first');
-    const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Screenshot' }).click()]);
+    const [download] = await Promise.all([
+        page.waitForEvent('download'),
+        page.getByRole('button', { name: 'Screenshot' }).click(),
+    ]);
     assert.equal(download.suggestedFilename(), 'hairbake_first.png');
     const bytes = readFileSync(await download.path());
     assert.equal(bytes.toString('latin1', 1, 4), 'PNG');
@@ -233,7 +263,10 @@ test('A bake without hair and one whose files do not fit together are told of in
     assert.match(await page.innerText('.viewer-problem'), /This bake has no hair\. The viewer needs both/);
     await page.close();
     await open('broken');
-    assert.match(await page.innerText('.viewer-problem'), /strands\.bin does not hold positions as strands\.json tells/);
+    assert.match(
+        await page.innerText('.viewer-problem'),
+        /strands\.bin does not hold positions as strands\.json tells/,
+    );
 });
 
 test('Unmounting gives the graphics context back', async () => {
@@ -247,10 +280,15 @@ test('Unmounting gives the graphics context back', async () => {
 });
 
 test('On a tablet and at 200 % zoom nothing is wider than the page', async () => {
-    for (const viewport of [{ width: 768, height: 1024 }, { width: 640, height: 360 }]) {
+    for (const viewport of [
+        { width: 768, height: 1024 },
+        { width: 640, height: 360 },
+    ]) {
         await open('first/second', { viewport });
         await page.screenshot({ path: join(pictures, `viewer_${viewport.width}.png`), fullPage: true });
-        const wide = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+        const wide = await page.evaluate(
+            () => document.documentElement.scrollWidth - document.documentElement.clientWidth,
+        );
         assert.equal(wide, 0);
         if (viewport.width === 768) await page.close();
     }
