@@ -1,0 +1,120 @@
+// What the viewer needs of a bake: its request, and the files of the output `raw` as typed arrays. The bytes come from
+// a service that anyone may write to, so that every number is compared with the size of what it describes.
+
+const needed = ['strands.json', 'strands.bin', 'maps.json', 'maps.f16'];
+
+/** Something to say to the user; `request` is what to bake instead, if that would help. */
+export class BakeProblem extends Error {
+    constructor(message, request = null) {
+        super(message);
+        this.request = request;
+    }
+}
+
+/**
+ * {id, request, strands, maps} of a bake that is done. `known` are bakes loaded before: the same strands or maps (by
+ * digest) are not fetched again but are the same object. `say` is told what is going on. Throws BakeProblem.
+ */
+export async function load_bake(api, id, { known = [], signal, say = () => {} } = {}) {
+    say('Asking for the bake.');
+    const view = await api.json(`/v1/bakes/${id}`);
+    refuse_unfit(view);
+    const digest = name => view.files.find(file => file.name === name).sha256;
+    const fetched = async (kind, json, bytes, read) => {
+        const same = known.map(bake => bake[kind]).find(object => object.digest && object.digest === digest(bytes));
+        if (same) return same;
+        say(`Fetching ${bytes}.`);
+        const page = await get(api, id, json, signal, reply => reply.json());
+        const buffer = await get(api, id, bytes, signal, reply => reply.arrayBuffer());
+        return { digest: digest(bytes), ...read(page, buffer) };
+    };
+    return {
+        id,
+        request: view.request,
+        strands: await fetched('strands', 'strands.json', 'strands.bin', read_strands),
+        maps: await fetched('maps', 'maps.json', 'maps.f16', read_maps),
+    };
+}
+
+function refuse_unfit(view) {
+    if (view.state !== 'done')
+        throw new BakeProblem(`This bake is ${view.state}, not done: there is nothing to show yet.`);
+    const missing = ['hair', 'environment'].filter(input => !view.request[input]);
+    if (missing.length)
+        throw new BakeProblem(
+            `This bake has no ${missing.join(' and no ')}. The viewer needs both: ask for a bake of a hair model and ` +
+                'an environment, with "raw" among its outputs.',
+        );
+    const names = new Set(view.files.map(file => file.name));
+    if (needed.some(name => !names.has(name)))
+        throw new BakeProblem(
+            'This bake did not write the output "raw", which is what the viewer reads. Ask for the same bake with ' +
+                '"raw" among its outputs; what it computed already is computed again only to be written.',
+            { ...view.request, outputs: [...new Set([...view.request.outputs, 'raw'])] },
+        );
+}
+
+async function get(api, id, name, signal, body) {
+    const reply = await fetch(api.file_url(id, name), { signal });
+    if (!reply.ok) throw new BakeProblem(`${name} of this bake could not be fetched: HTTP status ${reply.status}.`);
+    return body(reply);
+}
+
+/**
+ * {vertices, bounds, sh_bands, has_cone, positions, strand_begin, tangent_and_transmittance, transmittance_sh?,
+ * bent_cone?}.
+ */
+export function read_strands(page, buffer) {
+    const vertices = page.vertices;
+    demand(page.content === 'hairbake strands', 'strands.json is no list of strands');
+    demand(Number.isInteger(vertices) && vertices > 0, 'strands.json has no vertices to draw');
+    const array = (name, Type, size) => named_array(page, buffer, name, Type, size);
+    const strands = {
+        vertices,
+        bounds: page.bounds,
+        sh_bands: page.sh_bands,
+        has_cone: page.arrays.some(entry => entry.name === 'bent_cone'),
+        positions: array('positions', Float32Array, 3 * vertices),
+        strand_begin: array('strand_begin', Uint32Array, page.strands + 1),
+        tangent_and_transmittance: array('tangent_and_transmittance', Uint16Array, 4 * vertices),
+    };
+    demand([0, 1, 2, 3, 4].includes(page.sh_bands), 'strands.json: sh_bands is not 0 to 4');
+    if (page.sh_bands) strands.transmittance_sh = array('transmittance_sh', Uint16Array, page.sh_bands ** 2 * vertices);
+    if (strands.has_cone) strands.bent_cone = array('bent_cone', Uint16Array, 4 * vertices);
+    refuse_strands(strands.strand_begin, vertices);
+    return strands;
+}
+
+/** {texels, face_size, count, scale, exponent}: count maps, the diffuse one first. */
+export function read_maps(page, buffer) {
+    demand(page.content === 'hairbake irradiance maps', 'maps.json is no list of maps');
+    const [count, faces, n] = page.shape;
+    demand(faces === 6 && Number.isInteger(n) && n > 0 && n <= 4096, 'maps.json: the shape is not that of cube maps');
+    demand(Number.isInteger(count) && count >= 3, 'maps.json: a diffuse and two specular maps are the least');
+    demand(page.scale > 0 && page.exponent >= 0, 'maps.json: scale or exponent is out of range');
+    demand(buffer.byteLength === count * 6 * n * n * 8, 'maps.f16 does not have the size that maps.json tells');
+    return { texels: new Uint16Array(buffer), face_size: n, count, scale: page.scale, exponent: page.exponent };
+}
+
+function named_array(page, buffer, name, Type, size) {
+    const entry = page.arrays.find(array => array.name === name);
+    demand(entry, `strands.json has no array ${name}`);
+    const bytes = size * Type.BYTES_PER_ELEMENT;
+    demand(
+        entry.bytes === bytes && entry.offset % 8 === 0 && entry.offset + bytes <= buffer.byteLength,
+        `strands.bin does not hold ${name} as strands.json tells`,
+    );
+    return new Type(buffer, entry.offset, size);
+}
+
+function refuse_strands(strand_begin, vertices) {
+    const ordered = strand_begin.every((begin, s) => s === 0 || begin >= strand_begin[s - 1]);
+    demand(
+        strand_begin[0] === 0 && ordered && strand_begin[strand_begin.length - 1] === vertices,
+        'strands.bin: strand_begin does not divide the vertices',
+    );
+}
+
+function demand(holds, problem) {
+    if (!holds) throw new BakeProblem(`The bake's files do not fit together: ${problem}.`);
+}

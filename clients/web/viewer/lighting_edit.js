@@ -1,0 +1,106 @@
+// An edit of the lighting while it runs, and what it becomes in a request. Matrices are lists of rows.
+//
+// A bake's lighting is  R0 (environment) 2^e0 tint0 + lights0;  the edit turns, exposes and tints all of that and adds
+// lights of its own. So the request that bakes the edit has the rotation R R0, the stops e0 + e, the tint tint0 tint,
+// the old lights turned, exposed and tinted, and the new ones.
+
+/** `rotation_deg` and the lights are in the world frame; a light's azimuth 0 is +Z, 90 is +X, as the camera's. */
+export function no_edit() {
+    return { rotation_deg: [0, 0, 0], exposure_stops: 0, tint: [1, 1, 1], lights: [] };
+}
+
+export function new_light() {
+    return { azimuth_deg: 45, elevation_deg: 45, irradiance: 3, color: [1, 1, 1] };
+}
+
+export function is_edited(edit) {
+    return JSON.stringify(edit) !== JSON.stringify(no_edit());
+}
+
+/** Active, right-handed: about world X first, then Y, then Z (the request's rotation_deg). */
+export function rotation_matrix(degrees) {
+    const [cx, cy, cz] = degrees.map(angle => Math.cos((angle * Math.PI) / 180));
+    const [sx, sy, sz] = degrees.map(angle => Math.sin((angle * Math.PI) / 180));
+    return [
+        [cz * cy, cz * sy * sx - sz * cx, cz * sy * cx + sz * sx],
+        [sz * cy, sz * sy * sx + cz * cx, sz * sy * cx - cz * sx],
+        [-sy, cy * sx, cy * cx],
+    ];
+}
+
+/**
+ * Angles whose rotation_matrix is `m`, to 1e-9 degrees; where Y is turned by 90 degrees, X and Z are one: Z is 0 then.
+ */
+export function rotation_degrees(m) {
+    const y = Math.atan2(-m[2][0], Math.hypot(m[2][1], m[2][2]));
+    const level = Math.hypot(m[2][1], m[2][2]) > 1e-9;
+    const x = level ? Math.atan2(m[2][1], m[2][2]) : Math.atan2(-m[1][2], m[1][1]);
+    const z = level ? Math.atan2(m[1][0], m[0][0]) : 0;
+    return [x, y, z].map(angle => tidy((angle * 180) / Math.PI));
+}
+
+export function multiply(a, b) {
+    return a.map(row => [0, 1, 2].map(j => row[0] * b[0][j] + row[1] * b[1][j] + row[2] * b[2][j]));
+}
+
+export function transform(m, [x, y, z]) {
+    return m.map(row => row[0] * x + row[1] * y + row[2] * z);
+}
+
+/** Towards a light: unit vector. */
+export function light_direction({ azimuth_deg, elevation_deg }) {
+    const azimuth = (azimuth_deg * Math.PI) / 180,
+        elevation = (elevation_deg * Math.PI) / 180;
+    const level = Math.cos(elevation);
+    return [level * Math.sin(azimuth), Math.sin(elevation), level * Math.cos(azimuth)];
+}
+
+export function light_irradiance({ irradiance, color }) {
+    return color.map(channel => channel * irradiance);
+}
+
+/** What exposure and tint multiply radiance with, RGB. */
+export function gain_of(edit) {
+    return edit.tint.map(factor => factor * 2 ** edit.exposure_stops);
+}
+
+/**
+ * The request that bakes `request`'s lighting as edited. Throws an Error in words where the service would refuse it.
+ */
+export function compose_request(request, edit) {
+    const before = { ...no_edit(), ...request.irradiance };
+    const turned = edit.rotation_deg.some(angle => angle % 360 !== 0);
+    const rotation = rotation_matrix(edit.rotation_deg),
+        gain = gain_of(edit);
+    const irradiance = {
+        ...request.irradiance,
+        rotation_deg: turned
+            ? rotation_degrees(multiply(rotation, rotation_matrix(before.rotation_deg)))
+            : before.rotation_deg,
+        exposure_stops: tidy(before.exposure_stops + edit.exposure_stops),
+        tint: before.tint.map((factor, i) => tidy(factor * edit.tint[i])),
+        lights: [
+            ...before.lights.map(light => ({
+                direction: turned ? transform(rotation, light.direction).map(tidy) : light.direction,
+                irradiance: light.irradiance.map((channel, i) => tidy(channel * gain[i])),
+            })),
+            ...edit.lights.map(light => ({
+                direction: light_direction(light).map(tidy),
+                irradiance: light_irradiance(light).map(tidy),
+            })),
+        ],
+    };
+    refuse_beyond_limits(irradiance);
+    return { ...request, irradiance };
+}
+
+function refuse_beyond_limits({ exposure_stops, lights }) {
+    if (Math.abs(exposure_stops) > 64)
+        throw new Error(`The exposure would be ${exposure_stops} stops in all; a bake takes -64 to 64.`);
+    if (lights.length > 64) throw new Error(`There would be ${lights.length} lights in all; a bake takes at most 64.`);
+}
+
+/** Twelve digits: what is written to a request is not the last bit of a sine. */
+function tidy(value) {
+    return Math.abs(value) < 1e-9 ? 0 : Number(value.toPrecision(12));
+}

@@ -1,0 +1,295 @@
+// The viewer as its user meets it, in a browser, with a service that is only played.
+import assert from 'node:assert/strict';
+import { mkdirSync, readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, afterEach, before, beforeEach, test } from 'node:test';
+import { bake_service, generator, random_maps, strand_files } from './raw_files.mjs';
+import { json, open_browser, open_page, serve, stage } from './support.mjs';
+
+const pictures = process.env.HAIRBAKE_PICTURES ?? join(tmpdir(), 'hairbake_web_pictures');
+const axe = createRequire(new URL('../../npm/package.json', import.meta.url)).resolve('axe-core/axe.min.js');
+const hostile = '<img src=x onerror=alert(1)>';
+
+const html = `<!doctype html><html lang="en"><head><meta charset="utf-8"><title>Viewer</title>
+<meta name="viewport" content="width=device-width, initial-scale=1"><meta name="color-scheme" content="light dark">
+<link rel="stylesheet" href="/vendor/pico.css"></head>
+<body><main class="container-fluid"><h1>Viewer</h1><div id="place"></div></main>
+<script type="module" src="/mount.js"></script></body></html>`;
+const mount = `import { html, render } from '/vendor/preact.js';
+import { ViewerPage } from '/viewer/viewer_page.js';
+const place = document.querySelector('#place');
+const body = async reply => {
+    const object = await reply.json();
+    if (!reply.ok) throw new Error(object.detail);
+    return object;
+};
+const api = {
+    file_url: (id, name) => '/v1/bakes/' + id + '/files/' + name,
+    json: async path => body(await fetch(path)),
+    post: async (path, object) => body(await fetch(path, { method: 'POST', body: JSON.stringify(object) })),
+};
+const [left, right] = location.hash.slice(2).split('/');
+render(html\`<\${ViewerPage} left=\${left} right=\${right} api=\${api} />\`, place);
+window.unmount = () => render(null, place);`;
+
+let site, server, browser, page, posted, refusal;
+
+/** Curls round a ball: something that can be recognised in a picture. */
+function ball_of_hair(random) {
+    const vertices = [],
+        begin = [0];
+    for (let s = 0; s < 400; s++) {
+        const z = 1 - (2 * (s + 0.5)) / 400,
+            azimuth = s * 2.399963,
+            level = Math.sqrt(1 - z * z),
+            curl = 6 * random();
+        const out = [level * Math.cos(azimuth), z, level * Math.sin(azimuth)];
+        for (let i = 0; i < 12; i++) {
+            const r = 3 + 0.15 * i,
+                turn = curl + 0.5 * i;
+            vertices.push({
+                position: [
+                    r * out[0] + 0.1 * Math.cos(turn),
+                    r * out[1] - 0.01 * i * i,
+                    r * out[2] + 0.1 * Math.sin(turn),
+                ],
+                tangent: out,
+                average: 0.2 + 0.07 * i,
+                sh: [0.5 + 0.2 * i, out[1], out[2], out[0]],
+                cone: [...out, 1.2],
+            });
+        }
+        begin.push(vertices.length);
+    }
+    return strand_files(vertices, begin);
+}
+
+before(async () => {
+    const random = generator(11),
+        hair = ball_of_hair(random);
+    const maps = count => random_maps(random, 8, count, { scale: 1, exponent: 64 }).files;
+    const request = { irradiance: { rotation_deg: [0, 30, 0], exposure_stops: 1, tint: [1, 1, 1], lights: [] } };
+    const bakes = bake_service({
+        first: { files: { ...hair, ...maps(34) }, request },
+        second: { files: { ...hair, ...maps(10) }, request },
+        unread: { files: { 'transmittance.npy': Buffer.alloc(1) }, request: { ...request, outputs: ['npy'] } },
+        bald: { files: { ...hair, ...maps(34) }, request: { hair: null } },
+        broken: { files: { ...hair, ...maps(34), 'strands.bin': Buffer.alloc(100) } },
+    });
+    let asked = 0;
+    const answer = (method, path, body) => {
+        if (path === '/') return { type: 'text/html', body: html };
+        if (path === '/mount.js') return { type: 'text/javascript', body: mount };
+        if (method === 'POST' && refusal) return json({ detail: refusal }, 422);
+        if (method === 'POST') {
+            posted.push(JSON.parse(body));
+            asked = 0;
+            return json({ id: 'new', state: 'queued' }, 202);
+        }
+        if (path === '/v1/bakes/new') return json({ id: 'new', state: asked++ ? 'done' : 'running' });
+        return bakes(method, path);
+    };
+    mkdirSync(pictures, { recursive: true });
+    site = stage();
+    server = await serve(site.folder, answer);
+    browser = await open_browser();
+});
+after(async () => {
+    await browser?.close();
+    await server?.close();
+    site?.remove();
+});
+beforeEach(() => {
+    posted = [];
+    refusal = null;
+});
+afterEach(async () => {
+    const problems = page.problems.filter(problem => !/status of 4\d\d/.test(problem)); // answers that a test asks for
+    await page.close();
+    assert.deepEqual(problems, [], "on the browser's console");
+});
+
+async function open(path, options) {
+    page = await open_page(browser, options);
+    await page.goto(`${server.origin}/#/${path}`);
+    await page.waitForSelector('.viewer-captions, .viewer-problem');
+    if (await page.$('.viewer-captions'))
+        await page.waitForFunction(() => /ms/.test(document.querySelector('.viewer-note output').value));
+}
+
+/** Waits until frames have stopped coming, then gives the picture on the canvas as bytes. */
+async function picture() {
+    await page.evaluate(
+        () => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 100)))),
+    );
+    return page.locator('.viewer canvas').screenshot();
+}
+
+const slider = label => page.getByRole('slider', { name: label });
+
+test("Hair appears with the frame's time, and axe finds nothing wrong, light or dark", async () => {
+    for (const colorScheme of ['light', 'dark']) {
+        await open('first', { colorScheme });
+        await page.getByRole('button', { name: 'Add a light' }).click();
+        await page.screenshot({ path: join(pictures, `viewer_${colorScheme}.png`) });
+        await page.evaluate(readFileSync(axe, 'utf8'));
+        const { violations } = await page.evaluate(() => window.axe.run());
+        assert.deepEqual(
+            violations.map(({ id, nodes }) => `${id}: ${nodes[0].html}`),
+            [],
+        );
+        if (colorScheme === 'light') await page.close();
+    }
+});
+
+test('Arrow keys orbit, plus comes nearer, and F frames again', async () => {
+    await open('first');
+    await page.focus('.viewer canvas'); // its frame is in the picture
+    const before = await picture();
+    await page.keyboard.press('ArrowLeft');
+    const turned = await picture();
+    assert.ok(!turned.equals(before), 'the arrow key changed nothing');
+    await page.keyboard.press('ArrowRight');
+    assert.ok((await picture()).equals(before), 'back is not where it was');
+    await page.keyboard.press('+');
+    assert.ok(!(await picture()).equals(before), 'plus changed nothing');
+    await page.keyboard.press('f');
+    assert.ok((await picture()).equals(before), 'F did not frame');
+});
+
+test('Dragging orbits and the wheel changes the distance', async () => {
+    await open('first');
+    const before = await picture();
+    await page.mouse.move(300, 300);
+    await page.mouse.down();
+    await page.mouse.move(360, 320, { steps: 3 });
+    await page.mouse.up();
+    const turned = await picture();
+    assert.ok(!turned.equals(before), 'dragging changed nothing');
+    await page.mouse.wheel(0, 200);
+    assert.ok(!(await picture()).equals(turned), 'the wheel changed nothing');
+});
+
+test('Each choice of what is shown gives another picture, and two bakes stand side by side', async () => {
+    await open('first/second');
+    const seen = [await picture()];
+    await page.screenshot({ path: join(pictures, 'viewer_split.png') });
+    assert.match(await page.innerText('.viewer-captions'), /first, 33 specular maps\s+second, 9 specular maps/);
+    await page.getByLabel('Split').selectOption('One picture');
+    for (const part of ['Diffuse only', 'Specular only', 'A only', 'Diffuse and specular']) {
+        await page.getByLabel('Part').selectOption(part);
+        seen.push(await picture());
+    }
+    await page.getByLabel('Times A').uncheck();
+    seen.push(await picture());
+    assert.equal(new Set(seen.map(bytes => bytes.toString('base64'))).size, seen.length, 'two choices look alike');
+});
+
+test('The edited lighting is shown at once and baked as a request: turned, exposed, with a light', async () => {
+    await open('first');
+    const bake = page.getByRole('button', { name: 'Bake this lighting' });
+    assert.ok(await bake.isDisabled(), 'there is an edit to bake before one was made');
+    const before = await picture();
+    await slider('Turn about the vertical').fill('60');
+    const turned = await picture();
+    assert.ok(!turned.equals(before), 'turning the sky changed nothing');
+    await slider('Exposure').press('ArrowRight');
+    await page.getByRole('button', { name: 'Add a light' }).click();
+    await slider('Elevation').fill('90');
+    await slider('Irradiance').fill('4');
+    assert.ok(!(await picture()).equals(turned), 'the light changed nothing');
+    await bake.click();
+    await page.getByRole('link', { name: 'open the new bake' }).waitFor();
+    assert.equal(await page.getByRole('link', { name: 'open the new bake' }).getAttribute('href'), '#/view/new');
+    assert.equal(await page.getByRole('link', { name: 'compare' }).getAttribute('href'), '#/view/first/new');
+    assert.deepEqual(posted, [
+        {
+            hair: 'sha256:0',
+            environment: 'sha256:1',
+            outputs: ['raw'],
+            irradiance: {
+                rotation_deg: [0, 90, 0],
+                exposure_stops: 1.1,
+                tint: [1, 1, 1],
+                lights: [{ direction: [0, 1, 0], irradiance: [4, 4, 4] }],
+            },
+        },
+    ]);
+});
+
+test('A refusal of the service is shown as text', async () => {
+    await open('first');
+    refusal = hostile;
+    await slider('Turn about the vertical').fill('60');
+    await page.getByRole('button', { name: 'Bake this lighting' }).click();
+    await page.getByText(`It was not baked: ${hostile}`).waitFor();
+});
+
+test('At most eight lights are added, and a light can be removed', async () => {
+    await open('first');
+    const add = page.getByRole('button', { name: 'Add a light' });
+    for (let i = 0; i < 8; i++) await add.click();
+    assert.ok(await add.isDisabled());
+    await page.getByRole('button', { name: 'Remove light 3' }).click();
+    assert.equal(await page.getByRole('button', { name: /Remove light/ }).count(), 7);
+    assert.ok(await add.isEnabled());
+});
+
+test("A screenshot is a PNG of the picture's size", async () => {
+    await open('first');
+    const [download] = await Promise.all([
+        page.waitForEvent('download'),
+        page.getByRole('button', { name: 'Screenshot' }).click(),
+    ]);
+    assert.equal(download.suggestedFilename(), 'hairbake_first.png');
+    const bytes = readFileSync(await download.path());
+    assert.equal(bytes.toString('latin1', 1, 4), 'PNG');
+    const size = await page.$eval('.viewer canvas', canvas => [canvas.width, canvas.height]);
+    assert.deepEqual([bytes.readUInt32BE(16), bytes.readUInt32BE(20)], size);
+});
+
+test('A bake without the output raw says what to ask for, and asks for it', async () => {
+    await open('unread');
+    assert.match(await page.innerText('.viewer-problem'), /did not write the output "raw"/);
+    await page.getByRole('button', { name: 'Bake it with "raw"' }).click();
+    await page.getByRole('link', { name: 'open the new bake' }).waitFor();
+    assert.deepEqual(posted[0].outputs, ['npy', 'raw']);
+});
+
+test('A bake without hair and one whose files do not fit together are told of in words', async () => {
+    await open('bald');
+    assert.match(await page.innerText('.viewer-problem'), /This bake has no hair\. The viewer needs both/);
+    await page.close();
+    await open('broken');
+    assert.match(
+        await page.innerText('.viewer-problem'),
+        /strands\.bin does not hold positions as strands\.json tells/,
+    );
+});
+
+test('Unmounting gives the graphics context back', async () => {
+    await open('first');
+    const lost = await page.evaluate(() => {
+        const gl = document.querySelector('.viewer canvas').getContext('webgl2');
+        window.unmount();
+        return new Promise(done => setTimeout(() => done(gl.isContextLost()), 200));
+    });
+    assert.ok(lost);
+});
+
+test('On a tablet and at 200 % zoom nothing is wider than the page', async () => {
+    for (const viewport of [
+        { width: 768, height: 1024 },
+        { width: 640, height: 360 },
+    ]) {
+        await open('first/second', { viewport });
+        await page.screenshot({ path: join(pictures, `viewer_${viewport.width}.png`), fullPage: true });
+        const wide = await page.evaluate(
+            () => document.documentElement.scrollWidth - document.documentElement.clientWidth,
+        );
+        assert.equal(wide, 0);
+        if (viewport.width === 768) await page.close();
+    }
+});
