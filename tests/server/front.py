@@ -39,8 +39,8 @@ class Front:
     as they are; of the site file, only what is there to be set is replaced. Never runs as root: a test that does starts nginx as
     nobody in its own group, as a deployment does."""
 
-    def __init__(self, daemon, tls=False, rate="100000r/s", body="64m"):
-        self.daemon, self.tls, self.rate, self.body = daemon, tls, rate, body
+    def __init__(self, daemon, tls=False, rate="100000r/s", body="64m", more=""):
+        self.daemon, self.tls, self.rate, self.body, self.more = daemon, tls, rate, body, more
         self.folder = tempfile.TemporaryDirectory(prefix="hairbake-nginx-")
         self.path = Path(self.folder.name)
         self.port, self.plain_port = free_port(), free_port()
@@ -58,7 +58,7 @@ class Front:
                 (r"/var/lib/hairbake/store", str(self.daemon.path / "store")),
                 (r"client_max_body_size \w+;", f"client_max_body_size {self.body};")):
             text = re.sub(pattern, new, text)
-        return text
+        return text + self.more
 
     def __enter__(self):
         for name in ("nginx.conf", "nginx-locations.conf"):
