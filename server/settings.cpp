@@ -113,8 +113,7 @@ TokenSettings read_token(const toml::table& table) {
 Settings read_tables(const toml::table& file, const fs::path& base) {
     Settings settings;
     read_block(file, "listen", [&](Block& block) {
-        block.read<std::string>("socket", "a path",
-                                [&](const std::string& value) { settings.socket = base / value; });
+        block.read<std::string>("socket", "a path", [&](const std::string& value) { settings.socket = base / value; });
         block.text("address", settings.address);
         block.number("port", settings.port, 0, 65535);
         block.number("threads", settings.threads, 1, 1024);

@@ -186,11 +186,13 @@ void send_file(httplib::Response& to, const FileBody& file, const std::string& t
                             });
 }
 
-/// Names the file instead of sending it: nginx sends it, or the range of it that was asked for, with the reply's headers.
+/// Names the file instead of sending it: nginx sends it, or the range of it that was asked for, with the reply's
+/// headers.
 void leave_to_nginx(HttpReply& reply, const std::string& accel) {
     reply.status = 200;
-    std::erase_if(reply.headers,
-                  [](const auto& header) { return header.first == "Content-Range" || header.first == "Accept-Ranges"; });
+    std::erase_if(reply.headers, [](const auto& header) {
+        return header.first == "Content-Range" || header.first == "Accept-Ranges";
+    });
     reply.with("X-Accel-Redirect", accel + reply.file->name).with("Content-Type", reply.type);
     reply.file.reset();
 }
@@ -225,8 +227,7 @@ void remove_dead_socket(const std::string& path) {
 
 class Rim::Listener : public httplib::Server {
 public:
-    Listener(const RimSettings& settings, Rim::Handler handler)
-        : handler_(std::move(handler)), accel_(settings.accel) {
+    Listener(const RimSettings& settings, Rim::Handler handler) : handler_(std::move(handler)), accel_(settings.accel) {
         new_task_queue = [settings] { return new BoundedPool(settings.threads, settings.waiting); };
         set_keep_alive_max_count(1);
         set_keep_alive_timeout(first_byte_timeout_s);
