@@ -152,7 +152,7 @@ int serve(const Settings& settings) {
     Access access(settings.tokens);
     Metrics metrics;
     const Router router(all_routes(service, access, metrics), access);
-    Rim rim({settings.socket, settings.address, settings.port, settings.threads, settings.waiting},
+    Rim rim({settings.socket, settings.address, settings.port, settings.threads, settings.waiting, settings.accel},
             [&](HttpRequest& request) { return answer(router, metrics, request); });
     std::jthread serving([&] { rim.serve(); });
     rim.wait_until_serving();

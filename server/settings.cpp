@@ -113,11 +113,12 @@ TokenSettings read_token(const toml::table& table) {
 Settings read_tables(const toml::table& file, const fs::path& base) {
     Settings settings;
     read_block(file, "listen", [&](Block& block) {
-        block.text("socket", settings.socket);
+        block.read<std::string>("socket", "a path", [&](const std::string& value) { settings.socket = base / value; });
         block.text("address", settings.address);
         block.number("port", settings.port, 0, 65535);
         block.number("threads", settings.threads, 1, 1024);
         block.number("waiting", settings.waiting, 1, 65536);
+        block.text("accel", settings.accel);
     });
     read_block(file, "store", [&](Block& block) {
         block.path("folder", settings.store, base);
@@ -167,6 +168,8 @@ void complete(Settings& settings) {
     if (settings.socket.empty() && settings.address != "127.0.0.1" && settings.address != "::1")
         refuse("listen.address",
                "is " + settings.address + "; allowed is 127.0.0.1 or ::1: nginx is the face to the network");
+    if (!settings.accel.empty() && (!settings.accel.starts_with("/") || !settings.accel.ends_with("/")))
+        refuse("listen.accel", "is " + settings.accel + "; allowed is a location that begins and ends with /");
     if (!fs::exists(settings.worker)) refuse("workers.program", settings.worker.string() + " does not exist");
     settings.store = fs::absolute(settings.store);
 }

@@ -22,8 +22,9 @@ struct Settings {
     std::string socket;                 ///< Unix socket; when empty, address and port hold
     std::string address = "127.0.0.1";  ///< loopback only: the network's side is nginx's
     int port = 8080;                    ///< 0: any free one
-    int threads = 16;                   ///< requests at once
+    int threads = 64;                   ///< requests at once; nginx passes on up to 48 uploads
     int waiting = 256;                  ///< connections that may wait for a thread; then 503
+    std::string accel;                  ///< nginx's internal location of store/blobs, which sends files; or empty
     // [store]
     std::filesystem::path store = "store";
     std::uint64_t budget_bytes = 200ull << 30;

@@ -98,6 +98,10 @@ void Access::check_origin(const HttpRequest& request) const {
 }
 
 void Access::check(HttpRequest& request, Scope scope) {
+    if (tokens_.empty() && is_forwarded(request))
+        deny(403, "no-tokens",
+             "the daemon has no tokens in its configuration and so serves its own machine alone, nothing that a proxy "
+             "forwards; `hairbaked token new` makes one");
     if (scope == Scope::open) return;
     if (tokens_.empty()) {
         if (!is_loopback(request.header("Host").value_or("")))

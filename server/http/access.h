@@ -34,8 +34,8 @@ public:
 
     /// Sets request.caller, or throws Denied. Without tokens in the configuration everything is allowed to who names a
     /// loopback host in Host and, if at all, in Origin: a page of another site that had its name point to 127.0.0.1
-    /// cannot do that. With tokens: `Authorization: Bearer`, or the cookie of a session. A scope is not implied by
-    /// another, but admin implies all.
+    /// cannot do that; what a proxy forwards is refused, even what is open. With tokens: `Authorization: Bearer`, or
+    /// the cookie of a session. A scope is not implied by another, but admin implies all.
     void check(HttpRequest& request, Scope scope);
 
     /// Exchanges the request's bearer token for a session of twelve hours; the value of Set-Cookie. Throws Denied.

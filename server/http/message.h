@@ -31,10 +31,16 @@ struct HttpRequest {
 
 /// `length` bytes of an open file from `offset`.
 struct FileBody {
+    std::string name;             ///< in the store's folder blobs
     std::shared_ptr<void> owner;  ///< keeps the descriptor open
     int descriptor = -1;
     std::uint64_t offset = 0, length = 0;
 };
+
+/// Whether a proxy stands between the client and the daemon: ours sets X-Forwarded-For on everything that it forwards.
+inline bool is_forwarded(const HttpRequest& request) {
+    return request.header("X-Forwarded-For") || request.header("Forwarded");
+}
 
 struct HttpReply {
     int status = 200;

@@ -98,13 +98,12 @@ HttpReply cached_json(const HttpRequest& request, std::string json) {
     return json_reply(200, std::move(json)).with("ETag", tag).with("Cache-Control", "no-cache");
 }
 
-HttpReply file_reply(const HttpRequest& request, Descriptor file, std::uint64_t bytes, const std::string& digest,
-                     const std::string& type) {
+HttpReply file_reply(const HttpRequest& request, OpenBlob blob, const std::string& digest, const std::string& type) {
     Span span;
-    HttpReply reply = ranged(request, bytes, digest, type, span);
+    HttpReply reply = ranged(request, blob.bytes, digest, type, span);
     if (span.begin == span.end) return reply;
-    const auto owner = std::make_shared<Descriptor>(std::move(file));
-    reply.file = FileBody{owner, owner->get(), span.begin, span.end - span.begin};
+    const auto owner = std::make_shared<Descriptor>(std::move(blob.file));
+    reply.file = FileBody{blob_name(digest), owner, owner->get(), span.begin, span.end - span.begin};
     return reply;
 }
 

@@ -16,12 +16,11 @@ HttpReply json_reply(int status, std::string json);
 /// JSON that is asked for again and again: an ETag made from it, 304 when the client has it.
 HttpReply cached_json(const HttpRequest& request, std::string json);
 
-/// Bytes [0, bytes) of an open file whose strong ETag is `digest`: If-None-Match, one Range (If-Range counts), 416 with
-/// Content-Range. More than one range is answered with the whole.
-HttpReply file_reply(const HttpRequest& request, Descriptor file, std::uint64_t bytes, const std::string& digest,
-                     const std::string& type);
+/// A blob, whose digest is its strong ETag: If-None-Match, one Range (If-Range counts), 416 with Content-Range. More
+/// than one range is answered with the whole.
+HttpReply file_reply(const HttpRequest& request, OpenBlob blob, const std::string& digest, const std::string& type);
 
-/// The same of a text.
+/// The same of a text, with the ETag `digest`.
 HttpReply text_reply(const HttpRequest& request, std::string text, const std::string& digest, const std::string& type);
 
 /// Media type by the name's ending.

@@ -186,6 +186,17 @@ void send_file(httplib::Response& to, const FileBody& file, const std::string& t
                             });
 }
 
+/// Names the file instead of sending it: nginx sends it, or the range of it that was asked for, with the reply's
+/// headers.
+void leave_to_nginx(HttpReply& reply, const std::string& accel) {
+    reply.status = 200;
+    std::erase_if(reply.headers, [](const auto& header) {
+        return header.first == "Content-Range" || header.first == "Accept-Ranges";
+    });
+    reply.with("X-Accel-Redirect", accel + reply.file->name).with("Content-Type", reply.type);
+    reply.file.reset();
+}
+
 void fill(httplib::Response& to, const HttpReply& reply) {
     to.status = reply.status;
     for (const auto& [name, value] : reply.headers) to.set_header(name, value);
@@ -216,7 +227,7 @@ void remove_dead_socket(const std::string& path) {
 
 class Rim::Listener : public httplib::Server {
 public:
-    Listener(const RimSettings& settings, Rim::Handler handler) : handler_(std::move(handler)) {
+    Listener(const RimSettings& settings, Rim::Handler handler) : handler_(std::move(handler)), accel_(settings.accel) {
         new_task_queue = [settings] { return new BoundedPool(settings.threads, settings.waiting); };
         set_keep_alive_max_count(1);
         set_keep_alive_timeout(first_byte_timeout_s);
@@ -289,7 +300,9 @@ private:
 
     void answer(const httplib::Request& from, const httplib::ContentReader* reader, httplib::Response& to) {
         HttpRequest request = to_request(from, reader);
-        fill(to, handler_(request));
+        HttpReply reply = handler_(request);
+        if (reply.file && !accel_.empty() && is_forwarded(request)) leave_to_nginx(reply, accel_);
+        fill(to, reply);
     }
 
     bool process_and_close_socket(socket_t connection) override {
@@ -315,6 +328,7 @@ private:
     }
 
     Rim::Handler handler_;
+    const std::string accel_;
 };
 
 Rim::Rim(const RimSettings& settings, Handler handler)

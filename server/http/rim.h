@@ -13,7 +13,8 @@ struct RimSettings {
     std::string socket;  ///< path of a Unix socket; when empty, address and port hold
     std::string address;
     int port = 0;  ///< 0: any free one
-    int threads = 16, waiting = 256;
+    int threads = 64, waiting = 256;
+    std::string accel;  ///< location at which nginx sends the store's blobs; empty: the daemon sends them itself
 };
 
 /// One request a connection. What is malformed (framing, paths, control characters, encodings) is answered here with

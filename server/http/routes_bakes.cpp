@@ -40,8 +40,7 @@ HttpReply get_file(Service& service, HttpRequest& request) {
     const BakeFile file = service.bakes().file(request.parameters.at("id"), request.parameters.at("name"));
     const std::string type = media_type(file.name);
     if (!file.blob) return text_reply(request, file.text, file.etag, type);
-    OpenBlob blob = service.open_blob(*file.blob);
-    return file_reply(request, std::move(blob.file), blob.bytes, file.etag, type);
+    return file_reply(request, service.open_blob(*file.blob), *file.blob, type);
 }
 
 HttpReply post_rebake(Service& service, HttpRequest& request) {

@@ -35,8 +35,7 @@ HttpReply put_blob(Service& service, HttpRequest& request) {
 HttpReply get_blob(Service& service, HttpRequest& request) {
     const std::string digest = request.parameters.at("sha256");
     check_digest(digest);
-    OpenBlob blob = service.open_blob(digest);
-    return file_reply(request, std::move(blob.file), blob.bytes, digest, "application/octet-stream");
+    return file_reply(request, service.open_blob(digest), digest, "application/octet-stream");
 }
 
 /// The digest that the JSON body names.
@@ -66,8 +65,7 @@ HttpReply add_input(Service& service, HttpRequest& request, const std::string& k
 
 HttpReply get_thumbnail(Service& service, HttpRequest& request, const std::string& kind) {
     const std::string digest = service.catalog().thumbnail(kind, request.parameters.at("sha256"));
-    OpenBlob blob = service.open_blob(digest);
-    return file_reply(request, std::move(blob.file), blob.bytes, digest, "image/png");
+    return file_reply(request, service.open_blob(digest), digest, "image/png");
 }
 
 HttpReply put_name(Service& service, HttpRequest& request) {

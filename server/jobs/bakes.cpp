@@ -13,6 +13,7 @@ namespace hairbake {
 namespace {
 
 using Json = nlohmann::ordered_json;
+constexpr std::size_t most_views = 1000;
 
 // 0 id, 1 state, 2 request, 3 names, 4 hair, 5 environment, 6 priority, 7 transmittance, 8 irradiance, 9 attempts, 10
 // error, 11 created, 12 finished, 13 seq
@@ -103,13 +104,34 @@ std::string stage_manifest(Sql& sql, const SqlRow& bake, std::size_t column) {
 
 }  // namespace
 
+std::optional<std::string> Bakes::known_view(const std::string& id) {
+    const std::lock_guard lock(mutex_);
+    if (views_.version != database_.version()) return std::nullopt;
+    const auto found = views_.of.find(id);
+    if (found == views_.of.end()) return std::nullopt;
+    return found->second;
+}
+
+void Bakes::keep_view(std::uint64_t version, const std::string& id, const std::string& view) {
+    const std::lock_guard lock(mutex_);
+    if (version < views_.version) return;
+    if (version > views_.version || views_.of.size() >= most_views) views_.of.clear();
+    views_.version = version;
+    views_.of[id] = view;
+}
+
 std::string Bakes::get(const std::string& id) {
+    if (auto view = known_view(id)) return *view;
+    const std::uint64_t version = database_.version();
+    bool done = false;
     std::string answer;
     database_.read([&](Sql& sql) {
         const auto rows = sql.rows(std::string(columns) + "WHERE id = ?", {id});
         if (rows.empty()) refuse_unknown(id);
         answer = full_view(sql, queue_, rows[0]).dump();
+        done = rows[0].text(1) == "done";
     });
+    if (done) keep_view(version, id, answer);
     return answer;
 }
 

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <unordered_map>
 
 #include "server/jobs/queue.h"
 
@@ -36,8 +38,18 @@ public:
     BakeFile file(const std::string& id, const std::string& name);
 
 private:
+    /// Views of done bakes at one version of the database: they are asked for again and again.
+    struct Views {
+        std::uint64_t version = 0;
+        std::unordered_map<std::string, std::string> of;
+    };
+    std::optional<std::string> known_view(const std::string& id);
+    void keep_view(std::uint64_t version, const std::string& id, const std::string& view);
+
     Database& database_;
     Queue& queue_;
+    std::mutex mutex_;  ///< of the views
+    Views views_;
 };
 
 }  // namespace hairbake

@@ -23,6 +23,8 @@ bool is_digest(const std::string& text) {
                                             [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); });
 }
 
+std::string blob_name(const std::string& digest) { return digest.substr(0, 2) + "/" + digest; }
+
 double now() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
 
 BlobStore::BlobStore(const fs::path& folder, Database& database) : folder_(folder), database_(database) {
@@ -35,9 +37,7 @@ BlobStore::BlobStore(const fs::path& folder, Database& database) : folder_(folde
     sync_folder(folder_);
 }
 
-fs::path BlobStore::path_of(const std::string& digest) const {
-    return folder_ / "blobs" / digest.substr(0, 2) / digest;
-}
+fs::path BlobStore::path_of(const std::string& digest) const { return folder_ / "blobs" / blob_name(digest); }
 
 std::vector<std::string> BlobStore::recover() {
     std::error_code ignored;

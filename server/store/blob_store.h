@@ -21,6 +21,9 @@ namespace hairbake {
 /// Whether `text` is 64 lower-case hexadecimal digits.
 bool is_digest(const std::string& text);
 
+/// Where a blob lies in the folder blobs: "ab/<sha256>".
+std::string blob_name(const std::string& digest);
+
 /// A blob turned out to be missing or of other bytes than its name says. The store has forgotten it already.
 class LostBlob : public std::runtime_error {
 public:

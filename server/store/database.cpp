@@ -159,6 +159,7 @@ void Database::write(const std::function<void(Sql&)>& body) {
         SQLite::Transaction transaction(writer_->database, SQLite::TransactionBehavior::IMMEDIATE);
         body(*writer_);
         transaction.commit();
+        ++version_;
     } catch (const SQLite::Exception& error) {
         fail(error);
     }

@@ -1,6 +1,7 @@
 // The SQLite database of the service: one connection that writes, one that reads, whole transactions.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -53,6 +54,8 @@ public:
     void write(const std::function<void(Sql&)>& body);
     /// Runs `body` on one state of what is committed; it only reads. It may not write or take lock() inside.
     void read(const std::function<void(Sql&)>& body);
+    /// Grows with each write(), before it returns: what was read after asking holds while the number stays.
+    std::uint64_t version() const { return version_; }
     /// Held by who must keep files and rows in step: nobody else writes meanwhile.
     std::unique_lock<std::recursive_mutex> lock() { return std::unique_lock(writing_); }
 
@@ -60,6 +63,7 @@ private:
     class Connection;
     std::recursive_mutex writing_, reading_;  ///< in this order
     std::unique_ptr<Connection> writer_, reader_;
+    std::atomic<std::uint64_t> version_ = 0;
     bool in_read_ = false;  ///< under reading_
 };
 
