@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 
 #include "core/base/digest.h"
@@ -125,9 +126,9 @@ std::string Slots::task_for(const ClaimedStage& stage, const fs::path& folder) {
 }
 
 void Slots::run(const ClaimedStage& stage) {
-    const WorkFolder folder(store_.incoming_folder());
+    std::optional<WorkFolder> folder(std::in_place, store_.incoming_folder());
     Task task;
-    task.input = task_for(stage, folder.path);
+    task.input = task_for(stage, folder->path);
     task.cancel = stage.cancel.get();
     task.progress = [&](std::string_view phase, double fraction) {
         queue_.progress(stage.key, std::string(phase), overall(stage.kind, phase, fraction));
@@ -137,9 +138,10 @@ void Slots::run(const ClaimedStage& stage) {
                  outcome.end == Outcome::End::done        ? "done"
                  : outcome.end == Outcome::End::cancelled ? "stopped"
                                                           : outcome.message);
+    if (outcome.end != Outcome::End::done) folder.reset();  // what it holds may be what the database lacks
     switch (outcome.end) {
         case Outcome::End::done:
-            return store_result(stage, folder.path / "result");
+            return store_result(stage, folder->path / "result");
         case Outcome::End::failed:
             return queue_.failed(stage, {outcome.kind, outcome.message, outcome.field});
         case Outcome::End::died:

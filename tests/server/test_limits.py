@@ -71,7 +71,7 @@ class BigUploads(unittest.TestCase):
             status, headers, body = reply_on_only_head(d, f"Content-Length: {MEGABYTE + 1}")
             self.assertEqual((status, headers["Content-Type"]), (413, "application/problem+json"))
             self.assertIn(f"allowed is up to {MEGABYTE}", json.loads(body)["detail"])
-            # With Expect, the client is not even asked for it.
+            # With Expect too, be it that 100 comes first.
             self.assertEqual(reply_on_only_head(d, f"Content-Length: {MEGABYTE + 1}", "Expect: 100-continue")[0], 413)
 
     def test_chunks_over_the_limit_are_refused_as_soon_as_they_pass_it(self):
