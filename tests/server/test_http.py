@@ -84,7 +84,7 @@ class Rim(unittest.TestCase):
                 self.assertTrue(takes_body or method not in ("put", "patch"))
 
     def test_what_is_not_there_is_a_problem(self):
-        for path in ("/", "/v1", "/v1/bakes/" + "0" * 64, "/v2/bakes", "/v1/blobs/" + "0" * 64, "/v1/batches/x", "/etc/passwd"):
+        for path in ("/v1", "/v1/bakes/" + "0" * 64, "/v2/bakes", "/v1/blobs/" + "0" * 64, "/v1/batches/x", "/etc/passwd"):
             reply = self.daemon.ask("GET", path)
             self.assertEqual((reply.status, reply.headers["Content-Type"]), (404, "application/problem+json"), path)
             self.assertEqual(reply.json["type"], "urn:hairbake:problem:not-found")
