@@ -22,8 +22,8 @@ export function use_json(path) {
     return { ...state, reload: useCallback(() => set_round((n) => n + 1), []) };
 }
 
-/** { value, problem } of a GET that is asked again every `every_ms` until `ended(value)`. */
-export function use_watch(path, every_ms, ended = () => false) {
+/** { value, problem } of a GET that is asked again every `every_ms` until `ended(value)`; another `round` begins anew. */
+export function use_watch(path, every_ms, ended = () => false, round = 0) {
     const { api } = use_app();
     const [state, set_state] = useState({});
     useEffect(() => {
@@ -31,7 +31,7 @@ export function use_watch(path, every_ms, ended = () => false) {
         const take = (value) => (set_state({ value }), ended(value));
         api.watch(path, every_ms, take, (problem) => set_state((old) => ({ ...old, problem })), abort.signal);
         return () => abort.abort();
-    }, [path]);
+    }, [path, round]);
     return state;
 }
 

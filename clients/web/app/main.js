@@ -34,7 +34,7 @@ function Page({ route, first }) {
     const page = page_of(route.path);
     const [state, set_state] = useState({});
     const heading = useRef(null);
-    const key = route.path.join('/');
+    const key = JSON.stringify(route);
     useEffect(() => {
         document.title = `${page?.title ?? 'Not found'} · hairbake`;
         if (!first) heading.current?.focus();
@@ -55,17 +55,17 @@ function Page({ route, first }) {
 }
 
 function use_route() {
-    const [route, set_route] = useState({ ...read_route(location.hash), first: true });
+    const [state, set_state] = useState({ route: read_route(location.hash), first: true });
     useEffect(() => {
-        const follow = () => set_route({ ...read_route(location.hash), first: false });
+        const follow = () => set_state({ route: read_route(location.hash), first: false });
         addEventListener('hashchange', follow);
         return () => removeEventListener('hashchange', follow);
     }, []);
-    return route;
+    return state;
 }
 
 function App() {
-    const route = use_route();
+    const { route, first } = use_route();
     const [locked, set_locked] = useState(false);
     const [message, set_message] = useState('');
     const app = useMemo(() => {
@@ -83,7 +83,7 @@ function App() {
         <${Navigation} current=${route.path[0] ?? 'environments'} />
         ${locked
             ? html`<main class="container"><${TokenForm} on_open=${unlock} /></main>`
-            : html`<${Page} route=${route} first=${route.first} />`}
+            : html`<${Page} route=${route} first=${first} />`}
         <div class="visually-hidden" role="status">${message}</div>
     <//>`;
 }
