@@ -18,7 +18,7 @@ export const launch = () => chromium.launch({ executablePath: chromium_path, hea
 
 /** A page and the list of its faults: errors in scripts, refused by the Content-Security-Policy, requests to elsewhere. */
 export async function open_page(browser, origin, options = {}) {
-    const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, ...options });
+    const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, reducedMotion: 'reduce', ...options });
     const page = await context.newPage();
     const faults = [];
     page.on('pageerror', (error) => faults.push(`error: ${error.stack ?? error.message}`));

@@ -9,7 +9,7 @@ import { fileURLToPath } from 'node:url';
 const source = resolve(dirname(fileURLToPath(import.meta.url)), '../../..');
 const programs = process.env.HAIRBAKE_PROGRAMS ?? join(source, 'build/bin');
 
-export const patience_ms = 180_000; // only ever reached by a failure
+export const patience_ms = Number(process.env.HAIRBAKE_PATIENCE ?? 180) * 1000; // only ever reached by a failure
 
 /** Puts the page's files into `folder`. */
 export function stage_page(folder) {

@@ -83,16 +83,22 @@ function Select({ id, schema, value, on_change, described }) {
 }
 
 function Help({ id, schema, fault }) {
-    const range = schema.items?.enum ? '' : range_words(schema);
+    const range = schema.enum || schema.items?.enum ? '' : range_words(schema); // lists show what there is
     return html`<small id=${id}>${schema.description}${range && ` (${range}.)`}</small>
         ${fault && html`<small class="problem">${fault}</small>`}`;
+}
+
+/** "Face size, texels", "SH bands: diffuse". */
+function title_of(path, unit) {
+    const words = path.slice(path.length > 2 ? -2 : -1).map(title_words);
+    const title = words.length > 1 ? `${words[0]}: ${words[1].toLowerCase()}` : words[0];
+    return unit && !title.toLowerCase().includes(unit) ? `${title}, ${unit}` : title;
 }
 
 /** path: the field's place in the request; fault: what is wrong with the value, in words, or undefined. */
 export function Field({ path, schema, value, on_change, fault, changed }) {
     const id = `field-${path.join('-')}`;
-    const unit = schema['x-unit'];
-    const title = title_words(path.at(-1)) + (unit ? `, ${unit}` : '');
+    const title = title_of(path, schema['x-unit']);
     const common = { id, schema, value, on_change, described: `${id}-help`, invalid: Boolean(fault), title };
     const mark = `field ${changed ? 'changed' : ''}`;
     const help = html`<${Help} id=${`${id}-help`} schema=${schema} fault=${fault} />`;

@@ -74,10 +74,11 @@ export function Histogram({ bake }) {
             if (live) plot = drawn;
             else drawn.destroy();
         });
-        addEventListener('resize', fit);
+        const observer = new ResizeObserver(fit);
+        observer.observe(parent.current);
         return () => {
             live = false;
-            removeEventListener('resize', fit);
+            observer.disconnect();
             plot?.destroy();
         };
     }, [numbers]);
