@@ -53,6 +53,8 @@ HttpReply absent() { return problem(404, "not-found", "there is nothing at this 
 
 PageFiles::PageFiles(const fs::path& folder) {
     if (folder.empty()) return;
+    if (!fs::exists(folder / index_name))
+        throw Error(ErrorKind::usage, "web.folder is " + folder.string() + ", which has no index.html", "web.folder");
     Digest all;
     std::map<std::string, fs::path> paths;  // sorted, so that the digest does not depend on the file system
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
@@ -65,13 +67,11 @@ PageFiles::PageFiles(const fs::path& folder) {
         files_[name] = {type, std::move(text), std::move(digest)};
     }
     version_ = all.hex().substr(0, 16);
-    const auto index = files_.find(index_name);
-    if (index == files_.end())
-        throw Error(ErrorKind::usage, "web.folder is " + folder.string() + ", which has no index.html", "web.folder");
-    std::string& text = index->second.text;
+    File& index = files_.at(index_name);
+    std::string& text = index.text;
     for (std::size_t at = 0; (at = text.find(mark, at)) != std::string::npos;)
         text.replace(at, mark.size(), "/assets/" + version_);
-    index->second.digest = Digest().add(text).hex();
+    index.digest = Digest().add(text).hex();
 }
 
 const PageFiles::File* PageFiles::find(const std::string& path) const {

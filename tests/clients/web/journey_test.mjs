@@ -151,7 +151,7 @@ test('a downloaded file has the digest that the service tells', async () => {
 test('the viewer turns the sky, and its light is baked', async () => {
     await page.getByRole('button', { name: 'See it on the hair' }).or(page.getByRole('link', { name: 'See it on the hair' })).click();
     await page.getByText(/Frame time: [0-9.]+ ms/).waitFor();
-    await page.getByRole('slider', { name: 'Turn about the vertical (Y)' }).fill('30');
+    await page.locator('label', { hasText: 'Turn about the vertical (Y)' }).locator('input').fill('30');
     await keep_pictures('viewer');
     await page.getByRole('button', { name: 'Bake this lighting' }).click();
     await page.getByRole('link', { name: 'open the new bake' }).waitFor();

@@ -33,7 +33,7 @@ export function range_words(schema) {
     if (schema.enum) return `one of ${schema.enum.join(', ')}`;
     const part = number_part(schema);
     if (part) {
-        const low = part.exclusiveMinimum !== undefined ? `more than ${number_words(part.exclusiveMinimum)}, up to` : `${range_number(part.minimum)} to`;
+        const low = part.exclusiveMinimum !== undefined ? `more than ${range_number(part.exclusiveMinimum)}, up to` : `${range_number(part.minimum)} to`;
         const word = word_of(schema);
         return `${low} ${range_number(part.maximum)}${part.type === 'integer' ? ', whole' : ''}${word ? `, or ${word}` : ''}`;
     }
@@ -42,7 +42,10 @@ export function range_words(schema) {
 }
 
 // 9007199254740991 as it is: a limit is not rounded.
-const range_number = (value) => (Number.isInteger(value) && Math.abs(value) < 1e16 ? String(value) : number_words(value));
+function range_number(value) {
+    if (Math.abs(value) >= 1e16) return value.toExponential().replace('+', '');
+    return Number.isInteger(value) ? String(value) : number_words(value);
+}
 
 function type_fits(type, value) {
     if (type === 'null') return value === null;
