@@ -82,7 +82,7 @@ function App() {
         <a class="skip" href="#main" onClick=${skip}>Skip to the content</a>
         <${Navigation} current=${route.path[0] ?? 'environments'} />
         ${locked
-            ? html`<main class="container"><${TokenForm} on_open=${unlock} /></main>`
+            ? html`<main class="container" id="main"><${TokenForm} on_open=${unlock} /></main>`
             : html`<${Page} route=${route} first=${first} />`}
         <div class="visually-hidden" role="status">${message}</div>
     <//>`;
