@@ -62,7 +62,7 @@ function Form({ schema, presets, query }) {
     const request = build_request(schema, values);
     const wrong = Object.fromEntries(faults(schema, request).map(({ path, words }) => [path, `${title_words(path)} ${words}.`]));
     if (!values.hair && !values.environment) wrong.hair = 'A hair model, an environment, or one of each is needed.';
-    if (problem?.field) wrong[problem.field] = problem.message;
+    if (problem?.field) wrong[problem.field.replaceAll(/\[(\d+)\]/g, '.$1')] = problem.message;
     const change = (path, value) => {
         set_problem(null);
         set_values((old) => with_value(old, path, value));

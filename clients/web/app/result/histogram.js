@@ -55,8 +55,21 @@ async function draw(parent, counts) {
     );
 }
 
+/** Whether the system asks for dark; a change draws anew what has its colours from the style. */
+function use_dark() {
+    const query = matchMedia('(prefers-color-scheme: dark)');
+    const [dark, set_dark] = useState(query.matches);
+    useEffect(() => {
+        const follow = () => set_dark(query.matches);
+        query.addEventListener('change', follow);
+        return () => query.removeEventListener('change', follow);
+    }, []);
+    return dark;
+}
+
 export function Histogram({ bake }) {
     const { api } = use_app();
+    const dark = use_dark();
     const [{ numbers, count, problem }, take] = useState({});
     const parent = useRef(null);
     useEffect(() => {
@@ -81,7 +94,7 @@ export function Histogram({ bake }) {
             observer.disconnect();
             plot?.destroy();
         };
-    }, [numbers]);
+    }, [numbers, dark]);
     if (problem) return html`<${ProblemNote} problem=${problem} />`;
     if (!numbers) return html`<${Loading} what="the transmittance" />`;
     return html`<div>
