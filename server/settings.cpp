@@ -137,14 +137,27 @@ Settings read_tables(const toml::table& file, const fs::path& base) {
         block.number("wall_s", settings.wall_seconds, 1, 366 * 86400);
         block.number("max_crashes", settings.max_crashes, 0, 1000);
     });
+    read_block(file, "web", [&](Block& block) {
+        block.read<std::string>("folder", "a path", [&](const std::string& value) {
+            settings.web = value.empty() ? fs::path() : base / value;
+        });
+    });
     Block whole(file, "");
-    for (const char* table : {"listen", "store", "workers"}) whole.ignore(table);
+    for (const char* table : {"listen", "store", "workers", "web"}) whole.ignore(table);
     if (const toml::node* tokens = whole.get("token")) {
         if (!tokens->is_array_of_tables()) refuse("token", "is not a list of tables: [[token]]");
         for (const toml::node& token : *tokens->as_array()) settings.tokens.push_back(read_token(*token.as_table()));
     }
     whole.done();
     return settings;
+}
+
+/// The page as `./dev build` or an installation puts it; empty when there is none.
+fs::path page_beside(const fs::path& programs) {
+    for (const char* place : {"../web", "../share/hairbake/web"})
+        if (const fs::path folder = (programs / place).lexically_normal(); fs::exists(folder / "index.html"))
+            return folder;
+    return {};
 }
 
 }  // namespace
@@ -164,7 +177,9 @@ void complete(Settings& settings) {
     const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     if (settings.workers == 0) settings.workers = std::max(1, cores / 2);
     if (settings.worker_threads == 0) settings.worker_threads = std::max(1, cores / settings.workers);
-    if (settings.worker.empty()) settings.worker = fs::read_symlink("/proc/self/exe").parent_path() / "hairbake-worker";
+    const fs::path programs = fs::read_symlink("/proc/self/exe").parent_path();
+    if (settings.worker.empty()) settings.worker = programs / "hairbake-worker";
+    if (!settings.web) settings.web = page_beside(programs);
     if (settings.socket.empty() && settings.address != "127.0.0.1" && settings.address != "::1")
         refuse("listen.address",
                "is " + settings.address + "; allowed is 127.0.0.1 or ::1: nginx is the face to the network");

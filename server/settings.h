@@ -40,6 +40,9 @@ struct Settings {
     std::uint64_t cpu_seconds = 4 * 3600;
     double wall_seconds = 2 * 3600;
     int max_crashes = 5;  ///< deaths without a word after which a stage fails
+    // [web]
+    std::optional<std::filesystem::path>
+        web;  ///< folder of the page; empty: none; by default what lies beside the daemon
     // [[token]]
     std::vector<TokenSettings> tokens;
 };

@@ -1,8 +1,8 @@
 // Puts what the service serves into one folder: our own modules as they are, and vendor/ from node_modules.
 //   node clients/web/stage.mjs FOLDER
 // In the page's modules every import is a relative path: '../vendor/three.js', '../vendor/preact.js' ...
-import { cpSync, mkdirSync, readdirSync, rmSync, writeFileSync, readFileSync } from 'node:fs';
-import { dirname, join } from 'node:path';
+import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { dirname, join, posix } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
 const source = dirname(fileURLToPath(import.meta.url));
@@ -24,11 +24,29 @@ function stage(folder) {
         if (!not_served.has(name)) cpSync(join(source, name), join(folder, name), { recursive: true });
     for (const [name, from] of Object.entries(vendor))
         writeFileSync(join(folder, 'vendor', name), without_map(readFileSync(join(source, 'node_modules', from), 'utf8')));
+    const index = join(folder, 'index.html');
+    if (existsSync(index)) writeFileSync(index, with_preloads(readFileSync(index, 'utf8'), folder));
 }
 
 // Source maps are not served.
 function without_map(text) {
     return text.replace(/^\/[/*]# sourceMappingURL=.*$/m, '');
+}
+
+// The modules that the first page is made of, so that a browser asks for all of them at once instead of level by level.
+function with_preloads(html, folder) {
+    const modules = new Set();
+    const add = (name) => {
+        if (modules.has(name)) return;
+        modules.add(name);
+        const text = readFileSync(join(folder, name), 'utf8');
+        for (const [, path] of text.matchAll(/^(?:import|export)\b[^'"]*?['"](\.[^'"]+)['"]/gm))
+            add(posix.join(posix.dirname(name), path));
+    };
+    add('app/main.js');
+    add('app/pages/environments_page.js');
+    const links = [...modules].map((name) => `<link rel="modulepreload" href="{assets}/${name}">`);
+    return html.replace('<!-- preload -->', links.join('\n'));
 }
 
 if (process.argv.length !== 3) {

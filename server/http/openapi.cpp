@@ -33,6 +33,9 @@ std::string openapi() {
     Json& schemas = document["components"]["schemas"];
     schemas["BakeRequest"] = bake_request_schema();
     schemas["RebakeRequest"]["properties"]["irradiance"] = schemas["BakeRequest"]["properties"]["irradiance"];
+    for (const Preset& preset : presets())
+        document["components"]["examples"][std::string(preset.name)] = {
+            {"summary", preset_description(preset)}, {"value", Json::parse(preset.json).at("request")}};
     return document.dump(1);
 }
 

@@ -5,7 +5,7 @@
 
 namespace hairbake {
 
-/// config/openapi.json with the request's schema (config/request.schema.json) in it.
+/// config/openapi.json with the request's schema (config/request.schema.json) and the presets, as examples, in it.
 std::string openapi();
 
 }  // namespace hairbake

@@ -1,6 +1,7 @@
 // All routes of the service, one function a group.
 #pragma once
 
+#include <filesystem>
 #include <vector>
 
 #include "server/http/metrics.h"
@@ -9,9 +10,10 @@
 
 namespace hairbake {
 
-std::vector<Route> input_routes(Service& service);   ///< blobs, models, environments, names
-std::vector<Route> bake_routes(Service& service);    ///< bakes, rebakes, batches
-std::vector<Route> upload_routes(Service& service);  ///< tus
+std::vector<Route> input_routes(Service& service);                    ///< blobs, models, environments, names
+std::vector<Route> bake_routes(Service& service);                     ///< bakes, rebakes, batches
+std::vector<Route> upload_routes(Service& service);                   ///< tus
+std::vector<Route> page_routes(const std::filesystem::path& folder);  ///< the web page
 std::vector<Route> service_routes(Service& service, Access& access, Metrics& metrics);  ///< health, version, session
 
 std::vector<Route> all_routes(Service& service, Access& access, Metrics& metrics);

@@ -2,8 +2,13 @@
 import json
 import re
 import socket
+<<<<<<< HEAD
 import subprocess
+=======
+import tempfile
+>>>>>>> 57273a9 (The page is staged by ./dev and served; tests of its functions, uploads, tokens, names, accessibility)
 import unittest
+from pathlib import Path
 
 from harness import PROGRAMS, Daemon, base64_text, hair_bytes, quick_request, sha256
 
@@ -15,6 +20,49 @@ def status_of(answer):
     """Of a raw reply; None when the connection was closed without one."""
     match = re.match(rb"HTTP/1\.1 (\d{3}) ", answer)
     return int(match.group(1)) if match else None
+
+
+class Page(unittest.TestCase):
+    """The web page: files that are read when the daemon starts."""
+
+    def test_the_page_is_served_from_what_was_there_at_the_start(self):
+        with tempfile.TemporaryDirectory() as folder:
+            web = Path(folder) / "web"
+            (web / "app").mkdir(parents=True)
+            (web / "index.html").write_text('<script type="module" src="{assets}/app/main.js"></script>')
+            (web / "app/main.js").write_text("export {};")
+            (web / "secret.txt").write_text("not of a page's kinds")
+            with Daemon(config=f'[web]\nfolder = "{web}"') as d:
+                (web / "app/late.js").write_text("export {};")  # comes after the start
+                index = d.ask("GET", "/")
+                self.assertEqual((index.status, index.headers["Content-Type"]), (200, "text/html; charset=utf-8"))
+                self.assertEqual(index.headers["Cache-Control"], "no-cache")
+                policy = index.headers["Content-Security-Policy"]
+                self.assertTrue(policy.startswith("default-src 'none'; script-src 'self'; style-src 'self';"), policy)
+                self.assertNotIn("unsafe", policy)
+                self.assertIn("frame-ancestors 'none'", policy)
+                self.assertEqual(index.headers["X-Content-Type-Options"], "nosniff")
+                self.assertEqual(index.headers["Referrer-Policy"], "no-referrer")
+                again = d.ask("GET", "/", headers={"If-None-Match": index.headers["ETag"]})
+                self.assertEqual(again.status, 304)
+                address = re.search(r'src="(/assets/[0-9a-f]{16}/app/main\.js)"', index.body.decode()).group(1)
+                script = d.ask("GET", address)
+                self.assertEqual((script.status, script.body), (200, b"export {};"))
+                self.assertEqual(script.headers["Content-Type"], "text/javascript; charset=utf-8")
+                self.assertEqual(script.headers["Cache-Control"], "public, max-age=31536000, immutable")
+                base = address.rsplit("/app", 1)[0]
+                for path in (base + "/app/late.js", base + "/secret.txt", base + "/index.html", base + "/app", base,
+                             "/assets/0123456789abcdef/app/main.js", base + "/..%2findex.html", "/app/main.js"):
+                    self.assertIn(d.ask("GET", path).status, (400, 404), path)
+
+    def test_without_a_folder_there_is_no_page_and_a_wrong_one_is_refused(self):
+        with Daemon(config='[web]\nfolder = ""') as d:
+            self.assertEqual((d.ask("GET", "/").status, d.ask("GET", "/assets/x/y.js").status), (404, 404))
+            self.assertEqual(d.ask("GET", "/healthz").status, 200)
+            d.stop()
+            d.config = '[web]\nfolder = "nowhere"'
+            with self.assertRaisesRegex(AssertionError, "web.folder"):
+                d.start()
 
 
 class Rim(unittest.TestCase):
@@ -84,7 +132,7 @@ class Rim(unittest.TestCase):
                 self.assertTrue(takes_body or method not in ("put", "patch"))
 
     def test_what_is_not_there_is_a_problem(self):
-        for path in ("/", "/v1", "/v1/bakes/" + "0" * 64, "/v2/bakes", "/v1/blobs/" + "0" * 64, "/v1/batches/x", "/etc/passwd"):
+        for path in ("/v1", "/v1/bakes/" + "0" * 64, "/v2/bakes", "/v1/blobs/" + "0" * 64, "/v1/batches/x", "/etc/passwd"):
             reply = self.daemon.ask("GET", path)
             self.assertEqual((reply.status, reply.headers["Content-Type"]), (404, "application/problem+json"), path)
             self.assertEqual(reply.json["type"], "urn:hairbake:problem:not-found")

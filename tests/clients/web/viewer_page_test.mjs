@@ -8,7 +8,7 @@ import { after, afterEach, before, beforeEach, test } from 'node:test';
 import { bake_service, generator, random_maps, strand_files } from './raw_files.mjs';
 import { json, open_browser, open_page, serve, stage } from './support.mjs';
 
-const pictures = process.env.HAIRBAKE_PICTURES ?? join(tmpdir(), 'hairbake_web_pictures');
+const pictures = process.env.HAIRBAKE_SCREENSHOTS ?? join(tmpdir(), 'hairbake_web_pictures');
 const axe = createRequire(new URL('../../npm/package.json', import.meta.url)).resolve('axe-core/axe.min.js');
 const hostile = '<img src=x onerror=alert(1)>';
 

@@ -1,0 +1,51 @@
+// Baking a set again under another environment: first what it would cost, then the batch.
+import { html, useEffect, useState } from '../../vendor/preact.js';
+import { use_app } from '../hooks.js';
+import { ProblemNote } from '../parts.js';
+import { count_words } from '../words.js';
+
+const stage_line = ({ transmittance, irradiance }) =>
+    `${count_words(transmittance, 'transmittance')}, ${count_words(irradiance, 'set of irradiance maps', 'sets of irradiance maps')}`;
+
+function Forecast({ forecast }) {
+    return html`<dl class="facts" id="forecast">
+        <div><dt>Bakes</dt><dd>${forecast.bakes}</dd></div>
+        <div><dt>Reused</dt><dd>${stage_line(forecast.reused_stages)}</dd></div>
+        <div><dt>Computed</dt><dd>${stage_line(forecast.computed_stages)}</dd></div>
+    </dl>`;
+}
+
+/** request: the body of POST /v1/rebakes, or null while it is not complete. */
+export function Rebake({ request, label = 'Re-bake' }) {
+    const { api, announce } = use_app();
+    const [state, set_state] = useState({});
+    const body = request && JSON.stringify(request);
+    useEffect(() => {
+        set_state({});
+        if (!body) return undefined;
+        let live = true;
+        api.post('/v1/rebakes', request, '?dry_run=1').then(
+            (forecast) => {
+                if (!live) return;
+                set_state({ forecast });
+                announce(`${count_words(forecast.bakes, 'bake')}: reused are ${stage_line(forecast.reused_stages)}; computed are ${stage_line(forecast.computed_stages)}.`);
+            },
+            (problem) => live && set_state({ problem }),
+        );
+        return () => (live = false);
+    }, [body]);
+    const confirm = async () => {
+        try {
+            const { id } = await api.post('/v1/rebakes', request);
+            location.hash = `#/batches/${id}`;
+        } catch (problem) {
+            set_state({ ...state, problem });
+        }
+    };
+    if (!request) return null;
+    return html`<section aria-label="What it takes">
+        <${ProblemNote} problem=${state.problem} />
+        ${!state.forecast && !state.problem && html`<p aria-busy="true">Counting what is reused</p>`}
+        ${state.forecast && html`<${Forecast} forecast=${state.forecast} /><button onClick=${confirm}>${label} ${count_words(state.forecast.bakes, 'bake')}</button>`}
+    </section>`;
+}

@@ -1,0 +1,103 @@
+// The request's JSON schema: what a form shows of it, and whether a value follows it. Of JSON Schema it knows what
+// config/request.schema.json uses.
+import { number_words } from '../words.js';
+
+/** { path: ['irradiance', 'face_size'], schema } of every field below `schema` that is no object of fields itself. */
+export function fields_of(schema, path = []) {
+    return Object.entries(schema.properties).flatMap(([name, part]) =>
+        part.properties ? fields_of(part, [...path, name]) : [{ path: [...path, name], schema: part }],
+    );
+}
+
+/** Every field's default, as a request. */
+export function defaults_of(schema) {
+    return Object.fromEntries(
+        Object.entries(schema.properties).map(([name, part]) => [name, part.properties ? defaults_of(part) : structuredClone(part.default ?? null)]),
+    );
+}
+
+const types_of = (schema) => [schema.type ?? []].flat();
+
+/** The alternative of a schema that takes numbers, or null. */
+export function number_part(schema) {
+    if (types_of(schema).some((type) => type === 'number' || type === 'integer')) return schema;
+    return (schema.anyOf ?? []).find((part) => number_part(part)) ?? null;
+}
+
+export const takes_null = (schema) => types_of(schema).includes('null');
+/** The word that may stand in a number's place ("auto"), or undefined. */
+export const word_of = (schema) => (schema.anyOf ?? []).find((part) => 'const' in part)?.const;
+
+/** "16 to 4096", "more than 0, up to 1", "one of a, b". */
+export function range_words(schema) {
+    if (schema.enum) return `one of ${schema.enum.join(', ')}`;
+    const part = number_part(schema);
+    if (part) {
+        const low = part.exclusiveMinimum !== undefined ? `more than ${range_number(part.exclusiveMinimum)}, up to` : `${range_number(part.minimum)} to`;
+        const word = word_of(schema);
+        return `${low} ${range_number(part.maximum)}${part.type === 'integer' ? ', whole' : ''}${word ? `, or ${word}` : ''}`;
+    }
+    if (schema.type === 'array' && number_part(schema.items ?? {})) return `${schema.minItems} numbers, each ${range_words(schema.items)}`;
+    return '';
+}
+
+// 9007199254740991 as it is: a limit is not rounded.
+function range_number(value) {
+    if (Math.abs(value) >= 1e16) return value.toExponential().replace('+', '');
+    return Number.isInteger(value) ? String(value) : number_words(value);
+}
+
+function type_fits(type, value) {
+    if (type === 'null') return value === null;
+    if (type === 'integer') return Number.isInteger(value);
+    if (type === 'number') return typeof value === 'number' && Number.isFinite(value);
+    if (type === 'array') return Array.isArray(value);
+    if (type === 'object') return typeof value === 'object' && value !== null && !Array.isArray(value);
+    return typeof value === type;
+}
+
+const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
+
+function number_fits(schema, value) {
+    return (
+        !(value < schema.minimum) && !(value > schema.maximum) && !(value <= schema.exclusiveMinimum) && !(value >= schema.exclusiveMaximum)
+    );
+}
+
+function in_words(value) {
+    return value === null ? 'empty' : JSON.stringify(value);
+}
+
+/** What does not follow the schema: [{ path: 'irradiance.face_size', words }]. */
+export function faults(schema, value, path = '') {
+    const wrong = (words) => [{ path, words }];
+    const types = types_of(schema);
+    if (types.length && !types.some((type) => type_fits(type, value)))
+        return wrong(`is ${in_words(value)}; allowed is ${range_words(schema) || types.join(' or ')}`);
+    if (schema.enum && !schema.enum.some((one) => same(one, value))) return wrong(`is ${in_words(value)}; allowed is ${range_words(schema)}`);
+    if ('const' in schema && !same(schema.const, value)) return wrong(`is ${in_words(value)}; allowed is ${schema.const}`);
+    if (schema.anyOf && !schema.anyOf.some((part) => faults(part, value).length === 0))
+        return wrong(`is ${in_words(value)}; allowed is ${range_words(schema)}`);
+    if (typeof value === 'number' && !number_fits(schema, value)) return wrong(`is ${value}; allowed is ${range_words(schema)}`);
+    if (typeof value === 'string' && value.length < (schema.minLength ?? 0)) return wrong('is empty');
+    if (Array.isArray(value)) return array_faults(schema, value, path);
+    if (schema.properties && value !== null && typeof value === 'object') return object_faults(schema, value, path);
+    return [];
+}
+
+function array_faults(schema, value, path) {
+    const { minItems = 0, maxItems = Infinity } = schema;
+    if (value.length < minItems || value.length > maxItems) return [{ path, words: `has ${value.length} entries; allowed are ${minItems} to ${maxItems}` }];
+    if (schema.uniqueItems && new Set(value.map((item) => JSON.stringify(item))).size < value.length) return [{ path, words: 'holds something twice' }];
+    return schema.items ? value.flatMap((item, i) => faults(schema.items, item, `${path}.${i}`)) : [];
+}
+
+function object_faults(schema, value, path) {
+    const of = (name) => (path ? `${path}.${name}` : name);
+    const missing = (schema.required ?? []).filter((name) => !(name in value)).map((name) => ({ path: of(name), words: 'is missing' }));
+    const own = Object.entries(value).flatMap(([name, part]) => {
+        if (Object.hasOwn(schema.properties, name)) return faults(schema.properties[name], part, of(name));
+        return schema.additionalProperties === false ? [{ path: of(name), words: 'is not a field' }] : [];
+    });
+    return [...missing, ...own];
+}

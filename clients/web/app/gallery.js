@@ -1,0 +1,101 @@
+// Hair models or environments: what is there, and how more gets there.
+import { html, useMemo, useState } from '../vendor/preact.js';
+import { use_app, use_list } from './hooks.js';
+import { fact_rows, label_of, names_by_digest, summary, warnings } from './input_facts.js';
+import { Facts, Loading, ProblemNote, Warnings } from './parts.js';
+import { file_names } from './uploads/uploads.js';
+import { UploadPanel } from './uploads/upload_panel.js';
+import { name_from_file } from './words.js';
+
+/** { items, names: { sha256: [path] }, files: { sha256: file name }, problem, reload } */
+export function use_inputs(kind) {
+    const list = use_list(`/v1/${kind}s`, `${kind}s`);
+    const named = use_list(`/v1/names/${kind}`, 'names');
+    const reload = () => {
+        list.reload();
+        named.reload();
+    };
+    const names = useMemo(() => names_by_digest(named.items ?? []), [named.items]);
+    const files = useMemo(file_names, [list.items]);
+    return { items: list.items, names, files, problem: list.problem ?? named.problem, reload };
+}
+
+function NameForm({ entry, suggestion, on_named }) {
+    const { api, announce } = use_app();
+    const [problem, set_problem] = useState(null);
+    const save = async (event) => {
+        event.preventDefault();
+        const form = new FormData(event.target);
+        const path = form.get('path').trim();
+        try {
+            const { version } = await api.put(name_address(entry.kind, path), { sha256: entry.id, note: form.get('note') });
+            announce(`${path} is now version ${version}.`);
+            on_named();
+        } catch (failure) {
+            set_problem(failure);
+        }
+    };
+    return html`<form onSubmit=${save}>
+        <label>Name
+            <input name="path" required maxlength="200" pattern="[A-Za-z0-9._\\-]+(/[A-Za-z0-9._\\-]+)*" value=${suggestion}
+                aria-describedby=${`help-${entry.id}`} />
+            <small id=${`help-${entry.id}`}>Letters, digits, ".", "_", "-", and "/" between parts. A name that is taken gets a new version.</small>
+        </label>
+        <label>Note <input name="note" maxlength="500" /></label>
+        <${ProblemNote} problem=${problem} />
+        <button type="submit" class="small">Put the name here</button>
+    </form>`;
+}
+
+export const name_address = (kind, path) => `/v1/names/${kind}/${path.split('/').map(encodeURIComponent).join('/')}`;
+
+function Names({ kind, paths }) {
+    if (!paths) return null;
+    return html`<p class="names">${paths.map((path, i) => html`${i > 0 && ', '}<a key=${path} href=${`#/names/${kind}/${path}`}>${path}</a>`)}</p>`;
+}
+
+function Card({ entry, label, paths, files, on_change }) {
+    const { api, announce } = use_app();
+    const [problem, set_problem] = useState(null);
+    const remove = async () => {
+        if (!confirm(`Forget ${label} and its file?`)) return;
+        try {
+            await api.remove(entry.links.self);
+            announce(`${label} is gone.`);
+            on_change();
+        } catch (failure) {
+            set_problem(failure);
+        }
+    };
+    const field = entry.kind === 'model' ? 'hair' : 'environment';
+    const bake = `#/bake?${field}=${entry.id}`;
+    return html`<article class="card" data-id=${entry.id}>
+        <img src=${entry.links.thumbnail} alt="" loading="lazy" width="256" height=${entry.kind === 'model' ? 256 : 128} />
+        <h3>${label}</h3>
+        <${Names} kind=${entry.kind} paths=${paths} />
+        <p>${summary(entry)}</p>
+        <${Warnings} texts=${warnings(entry)} />
+        <p class="actions"><a role="button" class="small" href=${bake} aria-label=${`Bake with ${label}`}>Bake</a>
+            <button class="small secondary outline" onClick=${remove} aria-label=${`Delete ${label}`}>Delete</button></p>
+        <${ProblemNote} problem=${problem} />
+        <details><summary>Facts</summary><${Facts} rows=${fact_rows(entry)} /></details>
+        <details><summary>Name it</summary>
+            <${NameForm} entry=${entry} suggestion=${paths?.[0] ?? name_from_file(files[entry.id] ?? '')} on_named=${on_change} />
+        </details>
+    </article>`;
+}
+
+export function Gallery({ kind, label, accept, empty }) {
+    const { items, names, files, problem, reload } = use_inputs(kind);
+    return html`<div>
+        <${UploadPanel} kind=${kind} label=${label} accept=${accept} on_stored=${reload} />
+        <${ProblemNote} problem=${problem} />
+        <h2 class="visually-hidden">Stored</h2>
+        ${!items && html`<${Loading} what="the gallery" />`}
+        ${items?.length === 0 && !problem && html`<p>${empty}</p>`}
+        <div class="gallery">
+            ${(items ?? []).map((entry) => html`<${Card} key=${entry.id} entry=${entry} label=${label_of(entry.id, names, files)}
+                paths=${names[entry.id]} files=${files} on_change=${reload} />`)}
+        </div>
+    </div>`;
+}

@@ -1,0 +1,33 @@
+// One bake: progress until it has ended, then its result.
+import { html, useEffect, useState } from '../../vendor/preact.js';
+import { bake_words } from '../bake/bake_table.js';
+import { Progress, use_bake } from '../bake/live_bake.js';
+import { use_inputs } from '../gallery.js';
+import { Loading, ProblemNote } from '../parts.js';
+
+/** The result's part of the page is loaded when there is a result. */
+function Result({ bake }) {
+    const [state, set_state] = useState({});
+    useEffect(() => {
+        import('../result/result.js').then(
+            (module) => set_state({ Content: module.Result }),
+            (problem) => set_state({ problem }),
+        );
+    }, []);
+    if (state.problem) return html`<${ProblemNote} problem=${state.problem} />`;
+    return state.Content ? html`<${state.Content} bake=${bake} />` : html`<${Loading} what="the result" />`;
+}
+
+export default function OneBakePage({ path }) {
+    const { bake, problem, again } = use_bake(path[1]);
+    const models = use_inputs('model');
+    const environments = use_inputs('environment');
+    if (!bake) return problem ? html`<${ProblemNote} problem=${problem} />` : html`<${Loading} what="the bake" />`;
+    return html`<div>
+        <p>${bake_words(bake, models, environments)}</p>
+        <${ProblemNote} problem=${problem} />
+        <${Progress} bake=${bake} again=${again} />
+        ${bake.state === 'done' && html`<${Result} bake=${bake} />`}
+        <details><summary>The request</summary><pre tabindex="0">${JSON.stringify(bake.request, null, 2)}</pre></details>
+    </div>`;
+}

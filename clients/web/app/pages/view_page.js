@@ -1,0 +1,20 @@
+// Where the viewer is mounted; its module brings three.js and is loaded only here.
+import { html, useEffect, useState } from '../../vendor/preact.js';
+import { use_app } from '../hooks.js';
+import { Loading } from '../parts.js';
+
+export default function ViewPage({ path }) {
+    const { api } = use_app();
+    const [state, set_state] = useState({});
+    useEffect(() => {
+        import('../../viewer/viewer_page.js').then(
+            (module) => set_state({ ViewerPage: module.ViewerPage }),
+            (error) => set_state({ error }),
+        );
+    }, []);
+    const [, left, right = null] = path;
+    if (!left) return html`<p>Which bake? <a href="#/bakes">Choose one</a>.</p>`;
+    if (state.error) return html`<p role="alert">The viewer could not be loaded: ${state.error.message}</p>`;
+    if (!state.ViewerPage) return html`<${Loading} what="the viewer" />`;
+    return html`<${state.ViewerPage} left=${left} right=${right} api=${api} />`;
+}

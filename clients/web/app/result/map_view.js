@@ -1,0 +1,111 @@
+// The maps as pictures: net or lat-long, any of them, at any exposure, with the value under the pointer.
+import { html, useEffect, useMemo, useRef, useState } from '../../vendor/preact.js';
+import { use_app } from '../hooks.js';
+import { Facts, Loading, ProblemNote } from '../parts.js';
+import { number_words } from '../words.js';
+import { face_names, layout_of, texel_direction } from './cube.js';
+import { load_maps, srgb_byte } from './map_set.js';
+
+function draw(canvas, set, m, layout, stops) {
+    const { width, height } = layout;
+    canvas.width = width;
+    canvas.height = height;
+    const image = new ImageData(width, height);
+    const gain = 2 ** stops;
+    for (let y = 0, at = 0; y < height; ++y)
+        for (let x = 0; x < width; ++x, at += 4) {
+            const texel = layout.texel(x, y);
+            if (!texel) continue; // stays transparent
+            set.value(m, texel).forEach((value, channel) => (image.data[at + channel] = srgb_byte(value * gain)));
+            image.data[at + 3] = 255;
+        }
+    canvas.getContext('2d').putImageData(image, 0, 0);
+}
+
+function Readout({ set, m, texel }) {
+    const value = set.value(m, texel);
+    const direction = texel_direction(texel, set.face_size);
+    return html`<div class="readout"><${Facts} rows=${[
+        ['Value, linear RGB', html`<output id="texel-value">${value.map((x) => number_words(x, 5)).join(', ')}</output>`],
+        ['Texel', `${face_names[texel.face]}, column ${texel.i}, row ${texel.j}`],
+        ['Tangent', direction.map((x) => number_words(x, 3)).join(', ')],
+        ['Units', set.units],
+    ]} /></div>`;
+}
+
+const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+
+function Picture({ set, m, kind, stops, on_texel }) {
+    const canvas = useRef(null);
+    const at = useRef([0, 0]);
+    const layout = useMemo(() => layout_of(kind, set.face_size), [kind, set]);
+    useEffect(() => draw(canvas.current, set, m, layout, stops), [set, m, layout, stops]);
+    const look = (x, y) => {
+        const texel = layout.texel(x, y);
+        if (!texel) return false;
+        at.current = [x, y];
+        on_texel(texel);
+        return true;
+    };
+    useEffect(() => void look(Math.floor(layout.width * 0.375), Math.floor(layout.height / 2)), [layout]);
+    const move = (event) => {
+        const box = canvas.current.getBoundingClientRect();
+        look(Math.floor(((event.clientX - box.left) / box.width) * layout.width), Math.floor(((event.clientY - box.top) / box.height) * layout.height));
+    };
+    const step = (event) => {
+        const [dx, dy] = arrows[event.key] ?? [];
+        if (dx === undefined) return;
+        event.preventDefault();
+        look(at.current[0] + dx, at.current[1] + dy);
+    };
+    return html`<canvas class="map-canvas" ref=${canvas} tabindex="0" role="img" onPointerMove=${move} onPointerDown=${move} onKeyDown=${step}
+        aria-label=${`${set.title(m)}, as ${kind === 'net' ? 'a net of the cube' : 'a lat-long picture'}; the arrow keys move the point whose value is read`}></canvas>`;
+}
+
+function MapControls({ set, m, set_m, kind, set_kind, stops, set_stops, auto, set_auto }) {
+    const last = set.maps.length - 2; // specular maps are 0 to M
+    return html`<div>
+        <fieldset><legend>Map</legend>
+            <label><input type="radio" name="map" checked=${m === 0} onChange=${() => set_m(0)} /> Diffuse</label>
+            <label><input type="radio" name="map" checked=${m > 0} onChange=${() => set_m(1 + Math.floor(last / 2))} /> Specular</label>
+        </fieldset>
+        ${m > 0 && html`<label>θ' of the specular map: ${Number(set.maps[m].theta_prime_deg.toFixed(3))}°
+            <input type="range" id="theta" min="0" max=${last} value=${m - 1} aria-valuetext=${set.title(m)}
+                onInput=${(event) => set_m(1 + Number(event.target.value))} /></label>`}
+        <fieldset><legend>Laid out as</legend>
+            <label><input type="radio" name="layout" checked=${kind === 'net'} onChange=${() => set_kind('net')} /> Net of the cube</label>
+            <label><input type="radio" name="layout" checked=${kind === 'latlong'} onChange=${() => set_kind('latlong')} /> Lat-long</label>
+        </fieldset>
+        <label>Exposure: ${stops > 0 ? '+' : ''}${stops.toFixed(1)} stops
+            <input type="range" id="exposure" min="-16" max="16" step="0.1" value=${stops} onInput=${(event) => {
+                set_auto(false);
+                set_stops(Number(event.target.value));
+            }} /></label>
+        <label><input type="checkbox" checked=${auto} onChange=${(event) => set_auto(event.target.checked)} /> Exposure by the map's brightest texel</label>
+    </div>`;
+}
+
+export function MapView({ bake }) {
+    const { api } = use_app();
+    const [{ set, problem }, take] = useState({});
+    const [m, set_m] = useState(0);
+    const [kind, set_kind] = useState('net');
+    const [chosen, set_stops] = useState(0);
+    const [auto, set_auto] = useState(true);
+    const [texel, set_texel] = useState(null);
+    useEffect(() => {
+        load_maps(api, bake).then(
+            (loaded) => take({ set: loaded }),
+            (failure) => take({ problem: failure }),
+        );
+    }, [bake]);
+    const own = useMemo(() => set?.exposure(m), [set, m]);
+    if (!set) return problem ? html`<${ProblemNote} problem=${problem} />` : html`<${Loading} what="the maps" />`;
+    const stops = auto ? own : chosen;
+    return html`<div class="maps">
+        <div><p id="map-title"><strong>${set.title(m)}</strong></p>
+            <${Picture} set=${set} m=${m} kind=${kind} stops=${stops} on_texel=${set_texel} />
+            ${texel && html`<${Readout} set=${set} m=${m} texel=${texel} />`}</div>
+        <${MapControls} ...${{ set, m, set_m, kind, set_kind, stops, set_stops, auto, set_auto }} />
+    </div>`;
+}

@@ -1,0 +1,40 @@
+// A token is exchanged for a cookie that scripts cannot read; the page keeps nothing but that there is one.
+import { html, useState } from '../vendor/preact.js';
+import { use_app } from './hooks.js';
+import { ProblemNote } from './parts.js';
+
+const flag = 'hairbake.session';
+
+export function TokenForm({ on_open }) {
+    const { api } = use_app();
+    const [problem, set_problem] = useState(null);
+    const open = async (event) => {
+        event.preventDefault();
+        const token = new FormData(event.target).get('token').trim();
+        try {
+            await api.ask('/v1/session', { method: 'POST', headers: { Authorization: `Bearer ${token}` } });
+            localStorage.setItem(flag, 'open');
+            on_open();
+        } catch (failure) {
+            set_problem(failure.status === 401 ? { message: 'The service does not know this token, or it has expired.' } : failure);
+        }
+    };
+    return html`<form class="narrow" onSubmit=${open}>
+        <h1>A token is needed</h1>
+        <p>This service is not open to everybody. Who runs it makes tokens with <code>hairbaked token new</code>.</p>
+        <label>Token <input type="password" name="token" autocomplete="current-password" required autofocus /></label>
+        <${ProblemNote} problem=${problem} />
+        <button type="submit">Open</button>
+    </form>`;
+}
+
+export function SignOut() {
+    const { api } = use_app();
+    if (localStorage.getItem(flag) === null) return null;
+    const close = async () => {
+        await api.remove('/v1/session');
+        localStorage.removeItem(flag);
+        location.reload();
+    };
+    return html`<li><button class="outline small" onClick=${close}>Sign out</button></li>`;
+}

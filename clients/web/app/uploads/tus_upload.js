@@ -1,0 +1,65 @@
+// Sends one file in pieces that go on after a lost connection or a reload (tus-js-client remembers upload addresses in
+// localStorage, by the file's digest).
+
+const piece = 8 << 20;
+const delays_ms = [0, 1000, 2000, 4000, 8000, 15000, 30000, 30000, 30000, 30000];
+
+let library = null;
+
+/** tus-js-client is a plain script: window.tus. */
+function load_library() {
+    library ??= new Promise((resolve, reject) => {
+        const script = document.createElement('script');
+        script.src = new URL('../../vendor/tus.js', import.meta.url);
+        script.onload = () => resolve(window.tus);
+        script.onerror = () => {
+            library = null;
+            reject(new Error('The part of the page that sends files could not be loaded.'));
+        };
+        document.head.append(script);
+    });
+    return library;
+}
+
+/** Worth another try: no answer at all, a conflict with a request that is still being read, a fault of the server. */
+function may_pass(error) {
+    const status = error.originalResponse?.getStatus() ?? 0;
+    return status === 0 || status === 409 || status === 423 || status >= 500;
+}
+
+function words_of(error) {
+    const reply = error.originalResponse;
+    if (!reply) return 'The connection was lost and did not come back.';
+    try {
+        return JSON.parse(reply.getBody()).detail;
+    } catch {
+        return `The service answered ${reply.getStatus()}.`;
+    }
+}
+
+/** Resolves when the service has the whole file. on_progress(bytes); aborting `signal` keeps what was sent. */
+export async function send_file(file, sha256, on_progress, signal) {
+    const tus = await load_library();
+    await new Promise((resolve, reject) => {
+        const upload = new tus.Upload(file, {
+            endpoint: '/v1/uploads',
+            chunkSize: piece,
+            retryDelays: delays_ms,
+            metadata: { sha256, filename: file.name },
+            fingerprint: async () => `hairbake-${sha256}`,
+            removeFingerprintOnSuccess: true,
+            onShouldRetry: may_pass,
+            onProgress: on_progress,
+            onSuccess: resolve,
+            onError: (error) => reject(Object.assign(new Error(words_of(error)), { status: error.originalResponse?.getStatus() })),
+        });
+        signal.addEventListener('abort', () => {
+            upload.abort();
+            reject(new Error('stopped'));
+        });
+        upload.findPreviousUploads().then((earlier) => {
+            if (earlier.length) upload.resumeFromPreviousUpload(earlier[0]);
+            upload.start();
+        });
+    });
+}

@@ -1,0 +1,153 @@
+// All files that are being sent, one after the other; they go on while pages change.
+import { forget_file, keep_file, kept_files } from './kept_files.js';
+import { send_file } from './tus_upload.js';
+
+/**
+ * A job: { id, kind: 'model' | 'environment' | 'mesh', file, phase, done, known, sha256, entry, problem }.
+ * phase: waiting, digesting, sending, reading (by the service), stored, failed; done: bytes of the phase.
+ */
+export class Uploads {
+    jobs = [];
+    #api;
+    #announce;
+    #listeners = new Set();
+    #running = false;
+    #stops = new Map(); // by job id: AbortController
+
+    constructor(api, announce) {
+        this.#api = api;
+        this.#announce = announce;
+    }
+
+    /** Calls back after every change; returns what ends that. */
+    listen(callback) {
+        this.#listeners.add(callback);
+        return () => this.#listeners.delete(callback);
+    }
+
+    add(kind, files) {
+        for (const file of files) {
+            const job = { id: random_id(), kind, file, phase: 'waiting', done: 0 };
+            this.jobs = [...this.jobs, job];
+            keep_file({ id: job.id, kind, file });
+        }
+        this.#changed();
+        this.#run();
+    }
+
+    /** Takes up what a reload interrupted, and what failed for want of a token. */
+    async go_on() {
+        for (const { id, kind, file } of await kept_files())
+            if (!this.jobs.some((job) => job.id === id)) this.jobs = [...this.jobs, { id, kind, file, phase: 'waiting', done: 0 }];
+        for (const job of this.jobs) if (job.phase === 'failed' && job.status === 401) this.#update(job, { phase: 'waiting' });
+        this.#changed();
+        this.#run();
+    }
+
+    again(job) {
+        this.#update(job, { phase: 'waiting', problem: null, done: 0 });
+        this.#run();
+    }
+
+    /** Takes a job off the list, also while it is being sent. */
+    remove(job) {
+        this.#stops.get(job.id)?.abort();
+        forget_file(job.id);
+        this.jobs = this.jobs.filter(({ id }) => id !== job.id);
+        this.#changed();
+    }
+
+    async #run() {
+        if (this.#running) return;
+        this.#running = true;
+        for (let job; (job = this.jobs.find(({ phase }) => phase === 'waiting')); ) await this.#send(job);
+        this.#running = false;
+    }
+
+    async #send(job) {
+        const stop = new AbortController();
+        this.#stops.set(job.id, stop);
+        try {
+            this.#update(job, { phase: 'digesting', done: 0 });
+            const sha256 = await digest_of(job.file, (done) => this.#update(job, { done }), stop.signal);
+            const known = await this.#is_stored(sha256);
+            if (!known) {
+                this.#update(job, { phase: 'sending', sha256, done: 0 });
+                await send_file(job.file, sha256, (done) => this.#update(job, { done }), stop.signal);
+            }
+            this.#update(job, { phase: 'reading', sha256, known });
+            const entry = job.kind === 'mesh' ? null : await this.#api.post(`/v1/${job.kind}s`, { sha256 });
+            remember_name(sha256, job.file.name);
+            this.#update(job, { phase: 'stored', entry });
+            this.#announce(`${job.file.name} is stored.`);
+            forget_file(job.id);
+        } catch (error) {
+            if (stop.signal.aborted) return;
+            this.#update(job, { phase: 'failed', problem: error.message, status: error.status });
+            if (error.status >= 400 && error.status < 500 && error.status !== 401) forget_file(job.id);
+        } finally {
+            this.#stops.delete(job.id);
+        }
+    }
+
+    async #is_stored(sha256) {
+        try {
+            await this.#api.ask(`/v1/blobs/${sha256}`, { method: 'HEAD' });
+            return true;
+        } catch (problem) {
+            if (problem.status === 404) return false;
+            throw problem;
+        }
+    }
+
+    #update(job, change) {
+        Object.assign(job, change);
+        this.#changed();
+    }
+    #changed() {
+        for (const callback of this.#listeners) callback();
+    }
+}
+
+// crypto.randomUUID exists only where the page is at home or comes over TLS.
+function random_id() {
+    return Array.from(crypto.getRandomValues(new Uint32Array(4)), (word) => word.toString(16)).join('-');
+}
+
+function digest_of(file, on_progress, signal) {
+    return new Promise((resolve, reject) => {
+        const worker = new Worker(new URL('./digest_worker.js', import.meta.url), { type: 'module' });
+        const end = (act, value) => {
+            worker.terminate();
+            act(value);
+        };
+        worker.onmessage = ({ data }) => {
+            if (data.done !== undefined) on_progress(data.done);
+            else if (data.sha256) end(resolve, data.sha256);
+            else end(reject, new Error(data.error));
+        };
+        worker.onerror = () => end(reject, new Error('The file could not be digested.'));
+        signal.addEventListener('abort', () => end(reject, new Error('stopped')));
+        worker.postMessage(file);
+    });
+}
+
+const names_key = 'hairbake.file-names';
+const most_names = 500;
+
+/** The service knows files by digest; the names that they had here are kept here. */
+function remember_name(sha256, name) {
+    const names = file_names();
+    delete names[sha256];
+    names[sha256] = name;
+    localStorage.setItem(names_key, JSON.stringify(Object.fromEntries(Object.entries(names).slice(-most_names))));
+}
+
+/** { sha256: file name } */
+export function file_names() {
+    try {
+        return JSON.parse(localStorage.getItem(names_key)) ?? {};
+    } catch {
+        return {};
+    }
+}

@@ -1,0 +1,307 @@
+// What the page must hold beyond the journey: uploads that are interrupted, tokens, failures in words, names, hostile
+// texts, accessibility. The real daemon, in Chromium.
+import assert from 'node:assert/strict';
+import { createHash } from 'node:crypto';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { launch, open_page, require_tool } from './browser.mjs';
+import { Daemon, hairbake, patience_ms } from './daemon.mjs';
+
+const axe = readFileSync(require_tool.resolve('axe-core/axe.min.js'), 'utf8');
+const sha256 = (data) => createHash('sha256').update(data).digest('hex');
+
+let daemon, browser, sample, groom, sky, bake;
+
+before(async () => {
+    sample = mkdtempSync(join(tmpdir(), 'hairbake-sample-'));
+    hairbake('sample', sample, '--vertices', '30000', '--map-width', '128');
+    daemon = await Daemon.start();
+    browser = await launch();
+    groom = await daemon.add('model', join(sample, 'groom.hair'));
+    sky = await daemon.add('environment', join(sample, 'sky.hdr'));
+    const request = { hair: `sha256:${groom}`, environment: `sha256:${sky}`, outputs: ['npy', 'raw'],
+        transmittance: { voxels: 32, directions: 16, reference_vertices: 16 }, irradiance: { face_size: 4, specular_maps: 5 } };
+    bake = (await daemon.post('/v1/bakes', request)).id;
+    await daemon.finished(bake);
+});
+
+after(async () => {
+    await browser?.close();
+    await daemon?.stop();
+    rmSync(sample, { recursive: true, force: true });
+});
+
+/** Runs `act` on a page of its own; whatever the page must not do is found at the end. */
+async function with_page(address, act, options) {
+    const { context, page, faults } = await open_page(browser, address, options);
+    page.setDefaultTimeout(patience_ms);
+    try {
+        await act(page, context);
+        assert.deepEqual(faults, []);
+    } finally {
+        await context.close();
+    }
+}
+
+/** Sends at most so many bytes a second; 0: cuts the connection; -1: as fast as it goes. */
+async function throttle(page, bytes_per_second) {
+    page.cdp ??= await page.context().newCDPSession(page);
+    await page.cdp.send('Network.emulateNetworkConditions', {
+        offline: bytes_per_second === 0, latency: 0, downloadThroughput: -1, uploadThroughput: bytes_per_second });
+}
+
+/** Offsets at which the page asked to go on: one a PATCH. */
+function watch_patches(page) {
+    const offsets = [];
+    page.on('request', (request) => {
+        if (request.method() === 'PATCH') offsets.push(Number(request.headers()['upload-offset']));
+    });
+    return offsets;
+}
+
+// A groom of some megabytes, another for every seed, so that sending takes a while at 3 MB a second.
+function large_groom(seed) {
+    const folder = join(sample, String(seed));
+    hairbake('sample', folder, '--vertices', '600000', '--map-width', '16', '--seed', String(seed));
+    return join(folder, 'groom.hair');
+}
+const slow = 3e6;
+
+async function send_slowly(page, file) {
+    await page.goto(`${daemon.address}/#/models`);
+    await page.getByRole('heading', { name: 'Stored' }).waitFor({ state: 'attached' });
+    await throttle(page, slow);
+    await page.locator('.drop-zone input[type=file]').setInputFiles(file);
+    await page.locator('.job[data-phase=sending] progress[value]').waitFor();
+    await page.waitForFunction(() => document.querySelector('.job[data-phase=sending] progress')?.value > 0.15);
+}
+
+async function assert_stored(file) {
+    const digest = sha256(readFileSync(file));
+    const reply = await fetch(`${daemon.address}/v1/models/${digest}`);
+    assert.equal(reply.status, 200, `${file} is not stored`);
+}
+
+test('an upload goes on where a reload of the page ended it', async () => {
+    const file = large_groom(11);
+    await with_page(daemon.address, async (page) => {
+        const offsets = watch_patches(page);
+        await send_slowly(page, file);
+        await page.reload();
+        await throttle(page, -1);
+        await page.locator('.job[data-phase=stored]').waitFor();
+        assert.ok(offsets.at(-1) > 0, `the last PATCH began at ${offsets.at(-1)}`);
+        await assert_stored(file);
+    });
+});
+
+test('an upload goes on after the connection was cut', async () => {
+    const file = large_groom(12);
+    await with_page(daemon.address, async (page) => {
+        const offsets = watch_patches(page);
+        await send_slowly(page, file);
+        const begun = offsets.length;
+        await throttle(page, 0);
+        await page.waitForTimeout(300);
+        await throttle(page, -1);
+        await page.locator('.job[data-phase=stored]').waitFor();
+        assert.ok(offsets.length > begun && offsets.at(-1) > 0, `PATCH requests began at ${offsets}`);
+        await assert_stored(file);
+    });
+});
+
+test('a file that the service has is not sent again', async () => {
+    await with_page(daemon.address, async (page) => {
+        const sent = [];
+        page.on('request', (request) => {
+            if (request.url().includes('/v1/uploads')) sent.push(request.url());
+        });
+        await page.goto(`${daemon.address}/#/models`);
+        await page.locator('.drop-zone input[type=file]').setInputFiles(join(sample, 'groom.hair'));
+        await page.getByText('the service had it already: nothing was sent').waitFor();
+        assert.deepEqual(sent, []);
+    });
+});
+
+test('what is no environment is refused in words', async () => {
+    await with_page(daemon.address, async (page) => {
+        await page.goto(`${daemon.address}/#/environments`);
+        await page.locator('.drop-zone input[type=file]').setInputFiles({ name: 'notes.hdr', mimeType: '', buffer: Buffer.from('shopping list') });
+        const job = page.locator('.job[data-phase=failed]');
+        await job.waitFor();
+        assert.match(await job.locator('[role=alert]').innerText(), /sha256:[0-9a-f]{64}/); // which file, and not where it lies
+    });
+});
+
+test('hostile names are text', async () => {
+    const hostile = '<img src=x onerror="document.title=1">&lt;script&gt;.hdr';
+    const evil_note = '<svg onload=alert(1)>';
+    await with_page(daemon.address, async (page) => {
+        page.on('dialog', () => assert.fail('a script of a name ran'));
+        await page.goto(`${daemon.address}/#/environments`);
+        await page.locator('.drop-zone input[type=file]').setInputFiles({ name: hostile, mimeType: '', buffer: readFileSync(join(sample, 'overcast.hdr')) });
+        await page.locator('.card h3', { hasText: hostile }).waitFor();
+        assert.equal(await page.locator('.job strong').innerText(), hostile);
+        assert.equal(await page.locator('img[src=x], svg[onload]').count(), 0);
+        const card = page.locator('.card', { has: page.locator('h3', { hasText: hostile }) });
+        await card.getByText('Name it').click();
+        const suggestion = await card.getByLabel('Name', { exact: false }).first().inputValue();
+        assert.match(suggestion, /^[A-Za-z0-9._-]+$/);
+        await card.getByLabel('Note').fill(evil_note);
+        await card.getByRole('button', { name: 'Put the name here' }).click();
+        await page.locator('.card .names a', { hasText: suggestion }).click();
+        await page.locator('td', { hasText: evil_note }).waitFor();
+        assert.equal(await page.locator('main svg').count(), 0);
+    });
+});
+
+test('a hair model that calls itself a script is text', async () => {
+    const bytes = Buffer.from(readFileSync(join(sample, 'groom.hair')));
+    const info = '<script>alert(1)</script>';
+    bytes.write(info + '\0', 40); // the 88 bytes of "info" of a HAIR header
+    await with_page(daemon.address, async (page) => {
+        page.on('dialog', () => assert.fail('a script of a model ran'));
+        await page.goto(`${daemon.address}/#/models`);
+        await page.locator('.drop-zone input[type=file]').setInputFiles({ name: 'evil.hair', mimeType: '', buffer: bytes });
+        const card = page.locator('.card', { hasText: 'evil.hair' });
+        await card.getByText('Facts').click();
+        await card.locator('dd', { hasText: info }).waitFor();
+    });
+});
+
+test('a name gets a new version, shows what followed the old one, and that is baked again in one step', async () => {
+    const put = (digest) => daemon.json('/v1/names/environment/stage/sunset', { method: 'PUT', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify({ sha256: digest }) });
+    await put(sky);
+    const { request } = await daemon.json(`/v1/bakes/${bake}`);
+    const irradiance = { ...request.irradiance, exponent: 10 }; // a bake of its own: the first one asked by digest
+    await daemon.finished((await daemon.post('/v1/bakes', { ...request, irradiance, environment: 'name:stage/sunset' })).id);
+    const studio = await daemon.add('environment', join(sample, 'studio.hdr'));
+    await with_page(daemon.address, async (page) => {
+        await page.goto(`${daemon.address}/#/names/environment/stage/sunset`);
+        await page.getByText('1 bake asked for this name, 0 of them for an older version.').waitFor();
+        await page.getByLabel('File').selectOption(studio);
+        await page.getByRole('button', { name: 'Put as version 2' }).click();
+        await page.getByText('1 bake asked for this name, 1 of them for an older version.').waitFor();
+        assert.match(await page.locator('#forecast').innerText(), /Reused\s+1 transmittance, 0/);
+        await page.getByRole('button', { name: /Bake with the newest version/ }).click();
+        await page.getByText('All 1 have ended.').waitFor();
+        const { bakes } = await daemon.json('/v1/bakes?name=stage%2Fsunset');
+        assert.equal(bakes[0].environment, studio);
+    });
+});
+
+test('a bake that fails says why, and another can be cancelled from the queue', async () => {
+    const dark = await daemon.add('environment', join(sample, 'overcast.hdr'));
+    // The model has a width, so that strand.width is none; a mesh that is no OBJ fails the worker.
+    const junk = Buffer.from('no mesh at all');
+    await fetch(`${daemon.address}/v1/blobs/${sha256(junk)}`, { method: 'PUT', body: junk });
+    const failing = await daemon.post('/v1/bakes', { hair: `sha256:${groom}`, environment: `sha256:${dark}`, occluder: `sha256:${sha256(junk)}` });
+    await with_page(daemon.address, async (page) => {
+        await page.goto(`${daemon.address}/#/bakes/${failing.id}`);
+        await page.getByRole('heading', { name: 'Why it failed' }).waitFor();
+        assert.match(await page.locator('[role=alert] p').innerText(), /sha256:[0-9a-f]{64}/);
+        // Traced with the most directions: some minutes of work.
+        await daemon.post('/v1/bakes', { hair: `sha256:${groom}`, transmittance: { method: 'trace', directions: 4096, direction_set: 'random' } });
+        await page.goto(`${daemon.address}/#/bakes`);
+        await page.getByRole('button', { name: /^Cancel/ }).click();
+        await page.locator('.state-cancelled').waitFor();
+    });
+});
+
+test('the form refuses what the schema does not allow and says what is', async () => {
+    await with_page(daemon.address, async (page) => {
+        const posts = [];
+        page.on('request', (request) => request.method() === 'POST' && posts.push(request.url()));
+        await page.goto(`${daemon.address}/#/bake?environment=${sky}`);
+        await page.getByText('Irradiance', { exact: true }).click();
+        await page.getByLabel('Face size').fill('3');
+        await page.getByRole('button', { name: 'Bake', exact: true }).click();
+        await page.getByText('Face size is 3; allowed is 4 to 256, whole.').waitFor();
+        assert.equal(await page.getByLabel('Face size').getAttribute('aria-invalid'), 'true');
+        assert.deepEqual(posts, []);
+    });
+});
+
+test('with tokens the page asks for one, takes the right one only, and forgets it on signing out', async () => {
+    const token = 'a-token-of-this-test';
+    const locked = await Daemon.start({ tokens: `[[token]]\nname = "artist"\nsha256 = "${sha256(token)}"\nscopes = ["read", "upload", "bake"]\n` });
+    try {
+        await with_page(locked.address, async (page) => {
+            await page.goto(locked.address);
+            await page.getByLabel('Token').fill('wrong');
+            await page.getByRole('button', { name: 'Open' }).click();
+            await page.getByText('The service does not know this token').waitFor();
+            await check_with_axe(page, 'token form');
+            await page.getByLabel('Token').fill(token);
+            await page.getByRole('button', { name: 'Open' }).click();
+            await page.getByText('No environment is stored yet.').waitFor();
+            await page.locator('.drop-zone input[type=file]').setInputFiles(join(sample, 'sky.hdr'));
+            await page.locator('.card').waitFor();
+            const [cookie] = await page.context().cookies();
+            assert.ok(cookie.httpOnly && cookie.sameSite === 'Strict');
+            await page.getByRole('button', { name: 'Sign out' }).click();
+            await page.getByLabel('Token').waitFor();
+        });
+    } finally {
+        await locked.stop();
+    }
+});
+
+test('navigation moves the focus to the heading and tells the title', async () => {
+    await with_page(daemon.address, async (page) => {
+        await page.goto(daemon.address);
+        await page.locator('.card').first().waitFor();
+        for (let i = 0; i < 4; ++i) await page.keyboard.press('Tab'); // skip link, hairbake, Environments, Models
+        await page.keyboard.press('Enter');
+        await page.getByRole('heading', { level: 1, name: 'Hair models' }).waitFor();
+        await page.waitForFunction(() => document.activeElement?.tagName === 'H1');
+        assert.equal(await page.title(), 'Hair models · hairbake');
+    });
+});
+
+test('the policy stops a script that stands in a page', async () => {
+    const { context, page, faults } = await open_page(browser, daemon.address);
+    await page.goto(daemon.address);
+    await page.evaluate(() => {
+        const script = document.createElement('script');
+        script.textContent = 'document.title = "ran"';
+        document.body.append(script);
+    });
+    assert.notEqual(await page.title(), 'ran');
+    assert.ok(faults.some((text) => /Content Security Policy/.test(text)), 'and the browser says so');
+    await context.close();
+});
+
+async function check_with_axe(page, name) {
+    await page.evaluate(axe); // by the debugger, which the page's policy does not bind
+    const { violations } = await page.evaluate(() => globalThis.axe.run(document, { resultTypes: ['violations'] }));
+    const words = violations.flatMap(({ id, help, nodes }) => nodes.map(({ html }) => `${name}: ${id}: ${help}: ${html.slice(0, 160)}`));
+    assert.deepEqual(words, []);
+}
+
+// What each page shows once it is whole.
+const pages = [
+    ['environments', '', '.card'],
+    ['models', '#/models', '.card'],
+    ['bake form', `#/bake`, 'form button[type=submit]'],
+    ['bakes', '#/bakes', 'tbody tr'],
+    ['result', () => `#/bakes/${bake}`, '.chart canvas'],
+    ['re-bake', () => `#/rebake?bakes=${bake}`, '.choice'],
+    ['name', '#/names/environment/stage/sunset', '#followers'],
+    ['viewer', () => `#/view/${bake}`, 'canvas'],
+    ['no page', '#/nowhere', 'h1'],
+];
+
+for (const colorScheme of ['light', 'dark'])
+    for (const [name, hash, whole] of pages)
+        test(`axe finds nothing wrong: ${name}, ${colorScheme}`, async () => {
+            await with_page(daemon.address, async (page) => {
+                await page.goto(`${daemon.address}/${typeof hash === 'function' ? hash() : hash}`);
+                await page.locator(whole).first().waitFor();
+                await page.evaluate(() => document.querySelectorAll('details').forEach((one) => (one.open = true)));
+                await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
+                await check_with_axe(page, `${name}, ${colorScheme}`);
+            }, { colorScheme });
+        });
