@@ -1,6 +1,8 @@
 // What the viewer needs of a bake: its request, and the files of the output `raw` as typed arrays. The bytes come from
 // a service that anyone may write to, so that every number is compared with the size of what it describes.
 
+import { from_half } from './half.js';
+
 const needed = ['strands.json', 'strands.bin', 'maps.json', 'maps.f16'];
 
 /** Something to say to the user; `request` is what to bake instead, if that would help. */
@@ -85,7 +87,7 @@ export function read_strands(page, buffer) {
     return strands;
 }
 
-/** {texels, face_size, count, scale, exponent}: count maps, the diffuse one first. */
+/** {texels, face_size, count, scale, exponent, level}: count maps, the diffuse one first; level is about its mean. */
 export function read_maps(page, buffer) {
     demand(page.content === 'hairbake irradiance maps', 'maps.json is no list of maps');
     const [count, faces, n] = page.shape;
@@ -93,7 +95,20 @@ export function read_maps(page, buffer) {
     demand(Number.isInteger(count) && count >= 3, 'maps.json: a diffuse and two specular maps are the least');
     demand(page.scale > 0 && page.exponent >= 0, 'maps.json: scale or exponent is out of range');
     demand(buffer.byteLength === count * 6 * n * n * 8, 'maps.f16 does not have the size that maps.json tells');
-    return { texels: new Uint16Array(buffer), face_size: n, count, scale: page.scale, exponent: page.exponent };
+    const texels = new Uint16Array(buffer),
+        level = page.scale * mean_green(texels.subarray(0, 6 * n * n * 4));
+    return { texels, face_size: n, count, scale: page.scale, exponent: page.exponent, level: one_digit(level) };
+}
+
+function mean_green(texels) {
+    let sum = 0;
+    for (let i = 1; i < texels.length; i += 4) sum += from_half(texels[i]);
+    return sum / (texels.length / 4);
+}
+
+// 1 where there is no light.
+function one_digit(value) {
+    return value > 0 && Number.isFinite(value) ? Number(value.toPrecision(1)) : 1;
 }
 
 function named_array(page, buffer, name, Type, size) {

@@ -96,18 +96,21 @@ export function SkyPanel({ edit, on }) {
     </fieldset>`;
 }
 
-/** `way`: what hides the lights; `ways`: which ways the bakes shown have. */
-export function LightsPanel({ lights, way, ways, on, on_way }) {
+/** `way`: what hides the lights; `ways`: which ways the bakes shown have; `level`: the sky's own diffuse light. */
+export function LightsPanel({ lights, level, way, ways, on, on_way }) {
     const change = (k, more) => on(lights.map((light, i) => (i === k ? { ...light, ...more } : light)));
     const options = Object.fromEntries(Object.entries(hiding).filter(([key]) => ways.includes(key)));
     return html`<fieldset>
         <legend>Added lights</legend>
         ${lights.map(
-            (light, k) => html`<${LightPanel} key=${k} number=${k + 1} light=${light} on=${more => change(k, more)}
-            remove=${() => on(lights.filter((_, i) => i !== k))} />`,
+            (
+                light,
+                k,
+            ) => html`<${LightPanel} key=${k} number=${k + 1} level=${level} light=${light}
+            on=${more => change(k, more)} remove=${() => on(lights.filter((_, i) => i !== k))} />`,
         )}
         <button type="button" class="secondary" disabled=${lights.length >= most_lights}
-            onClick=${() => on([...lights, new_light()])}>Add a light</button>
+            onClick=${() => on([...lights, new_light(level)])}>Add a light</button>
         ${
             lights.length > 0 &&
             html`<${Choice} label="Hidden by the hair through" value=${way} options=${options} on=${on_way} />`
@@ -115,14 +118,14 @@ export function LightsPanel({ lights, way, ways, on, on_way }) {
     </fieldset>`;
 }
 
-function LightPanel({ number, light, on, remove }) {
+function LightPanel({ number, level, light, on, remove }) {
     return html`<details open>
         <summary>Light ${number}</summary>
         <${Slider} label="Azimuth" value=${light.azimuth_deg} min="-180" max="180" step="1" unit="°"
             on=${azimuth_deg => on({ azimuth_deg })} />
         <${Slider} label="Elevation" value=${light.elevation_deg} min="-90" max="90" step="1" unit="°"
             on=${elevation_deg => on({ elevation_deg })} />
-        <${Slider} label="Irradiance" value=${light.irradiance} min="0" max="20" step="0.1"
+        <${Slider} label="Irradiance" value=${light.irradiance} min="0" max=${10 * level} step=${level / 20}
             on=${irradiance => on({ irradiance })} />
         <${Color} label="Colour" value=${light.color} on=${color => on({ color })} />
         <button type="button" class="secondary" onClick=${remove}>Remove light ${number}</button>

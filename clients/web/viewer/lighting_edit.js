@@ -9,8 +9,9 @@ export function no_edit() {
     return { rotation_deg: [0, 0, 0], exposure_stops: 0, tint: [1, 1, 1], lights: [] };
 }
 
-export function new_light() {
-    return { azimuth_deg: 45, elevation_deg: 45, irradiance: 3, color: [1, 1, 1] };
+/** `irradiance`: RGB is this times the colour. */
+export function new_light(irradiance) {
+    return { azimuth_deg: 45, elevation_deg: 45, irradiance, color: [1, 1, 1] };
 }
 
 export function is_edited(edit) {

@@ -82,8 +82,8 @@ export function ViewerPage({ left, right, api }) {
                     html`
                     <${SidesPanel} sides=${sides} names=${names} on=${set_sides} />
                     <${SkyPanel} edit=${edit} on=${set_edit} />
-                    <${LightsPanel} lights=${edit.lights} way=${way} ways=${ways_of(bakes)} on_way=${set_way}
-                        on=${lights => set_edit({ ...edit, lights })} />
+                    <${LightsPanel} lights=${edit.lights} level=${bakes[0].maps.level} way=${way}
+                        ways=${ways_of(bakes)} on_way=${set_way} on=${lights => set_edit({ ...edit, lights })} />
                     <fieldset>
                         <legend>Bake this lighting</legend>
                         <${BakeOrder} api=${api} old=${left} label="Bake this lighting" disabled=${!is_edited(edit)}
@@ -117,6 +117,9 @@ function mount_view(canvas, stage, holder, set_frame_ms, set_problem) {
         return;
     }
     const view = holder.current;
+    const lost = () =>
+        set_problem(new Error('The graphics card dropped the picture. Reloading the page draws it again.'));
+    canvas.addEventListener('webglcontextlost', lost);
     const fit = () => view.resize(stage.clientWidth, stage.clientHeight, Math.min(devicePixelRatio, 2));
     const observer = new ResizeObserver(fit);
     observer.observe(stage);
@@ -128,6 +131,7 @@ function mount_view(canvas, stage, holder, set_frame_ms, set_problem) {
         () => view.frame_hair(),
     );
     return () => {
+        canvas.removeEventListener('webglcontextlost', lost);
         observer.disconnect();
         deaf();
         holder.current = null;

@@ -269,6 +269,16 @@ test('A bake without hair and one whose files do not fit together are told of in
     );
 });
 
+test('A browser without WebGL 2 is told so', async () => {
+    page = await open_page(browser);
+    await page.addInitScript(() => {
+        HTMLCanvasElement.prototype.getContext = () => null;
+    });
+    await page.goto(`${server.origin}/#/first`);
+    await page.getByText('This browser has no WebGL 2').waitFor();
+    page.problems = page.problems.filter(problem => !/THREE.WebGLRenderer/.test(problem));
+});
+
 test('Unmounting gives the graphics context back', async () => {
     await open('first');
     const lost = await page.evaluate(() => {
