@@ -92,7 +92,7 @@ send() {
     ask -o /dev/null -T "$1" "$address/v1/blobs/$digest" && echo "$digest"
 }
 hair=$(send "$(find "$work/sample/all" -name '*.hair' | sort | head -n 1)")
-sky=$(send "$(find "$work/sample/all" -name '*sky*.hdr' -o -name '*.hdr' | sort | head -n 1)")
+sky=$(send "$(find "$work/sample/all" -name '*.hdr' -o -name '*.exr' | sort | head -n 1)")
 bake=$(ask -H 'Content-Type: application/json' -d "{\"hair\":\"sha256:$hair\",\"environment\":\"sha256:$sky\"}" "$address/v1/bakes" |
     grep -oE '"id":"[0-9a-f]+"' | head -n 1 | cut -d'"' -f4)
 for _ in {1..3000}; do
