@@ -137,7 +137,8 @@ def main():
     plain_port = free_port()
     with Daemon(tokens=admin_token(), config="blob_mb = 4096", listen='socket = "socket"\naccel = "/blobs/"') as daemon:
         plain = (f"\nserver {{ listen 127.0.0.1:{plain_port}; default_type application/json;\n"
-                 f"location = /constant {{ return 200 '{'x' * 1200}'; }}\n"
+                 f"access_log /dev/stdout json buffer=64k flush=1s;\n"
+                 f"location = /constant {{ return 200 '{'x' * 3100}'; }}\n"
                  f"location /static/ {{ alias {daemon.path}/store/blobs/; }} }}\n")
         with Front(daemon, body="4096m", more=plain) as front:
             bench_slow_clients(front)

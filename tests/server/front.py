@@ -44,10 +44,11 @@ class Front:
         self.folder = tempfile.TemporaryDirectory(prefix="hairbake-nginx-")
         self.path = Path(self.folder.name)
         self.port, self.plain_port = free_port(), free_port()
+        self.address = ("127.0.0.1", self.port)
 
     def site(self):
         text = (DOCKER / ("nginx-site-tls.conf" if self.tls else "nginx-site.conf")).read_text()
-        server = f"127.0.0.1:{self.daemon.port}" if self.daemon.port else f"unix:{self.daemon.path}/socket"
+        server = f"127.0.0.1:{self.daemon.port}" if self.daemon.port else f"unix:{self.daemon.address}"
         for pattern, new in (
                 (r"server unix:/run/hairbaked/hairbaked\.sock;", f"server {server};"),
                 (r"rate=500r/s", f"rate={self.rate}"),
@@ -97,6 +98,7 @@ class Front:
         """With the admin token unless the headers say otherwise."""
         return Daemon.ask(self, method, path, body, {"Authorization": f"Bearer {TOKEN}", **(headers or {})})
 
+    connect = Daemon.connect
     raw = Daemon.raw
     put = Daemon.put
     wait = Daemon.wait
