@@ -2,16 +2,12 @@
 import json
 import re
 import socket
-<<<<<<< HEAD
 import subprocess
-=======
 import tempfile
->>>>>>> 57273a9 (The page is staged by ./dev and served; tests of its functions, uploads, tokens, names, accessibility)
 import unittest
 from pathlib import Path
 
 from harness import PROGRAMS, Daemon, base64_text, hair_bytes, quick_request, sha256
-
 
 PAGE = set()  # rows of the table that serve files to a browser: no part of the API
 
