@@ -80,7 +80,7 @@ private:
 
 /// valijson names a place as ["<root>", "[irradiance]", "[lights]", "[0]"].
 Place place_of(const std::vector<std::string>& context, const Json& body, const Json& schema) {
-    Place place{{}, {}, &schema};
+    Place place{Json::json_pointer(), {}, &schema};
     for (std::size_t i = 1; i < context.size(); ++i) {
         const std::string inner = context[i].substr(1, context[i].size() - 2);
         if (body.at(place.pointer).is_array())

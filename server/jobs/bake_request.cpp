@@ -26,7 +26,7 @@ Json parse(const std::string& body) {
 /// "transmittance.voxels" -> "/transmittance/voxels".
 std::string pointer_to(std::string field) {
     std::replace(field.begin(), field.end(), '.', '/');
-    return field.empty() ? field : "/" + field;
+    return field.empty() ? field : std::string(1, '/').append(field);
 }
 
 struct Resolved {

@@ -9,10 +9,6 @@ from pathlib import Path
 
 from harness import PROGRAMS, Daemon, base64_text, hair_bytes, quick_request, sha256
 
-
-PAGE = set()  # rows of the table that serve files to a browser: no part of the API
-
-
 def status_of(answer):
     """Of a raw reply; None when the connection was closed without one."""
     match = re.match(rb"HTTP/1\.1 (\d{3}) ", answer)
@@ -77,8 +73,7 @@ class Rim(unittest.TestCase):
         described, found = {}, {}
         for line in table.splitlines():
             method, pattern, scope, limit, *types = line.split()
-            if f"{method} {pattern}" not in PAGE:
-                found[method, pattern.replace("...}", "}")] = scope, int(limit) > 0, set(types)
+            found[method, pattern.replace("...}", "}")] = scope, int(limit) > 0, set(types)
         for pattern, operations in document["paths"].items():
             for method, operation in operations.items():
                 scope = re.search(r"Scope: ([a-z]+)\.", operation["description"]).group(1)
