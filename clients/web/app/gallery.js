@@ -54,7 +54,9 @@ function Names({ kind, paths }) {
     return html`<p class="names">${paths.map((path, i) => html`${i > 0 && ', '}<a key=${path} href=${`#/names/${kind}/${path}`}>${path}</a>`)}</p>`;
 }
 
-function Card({ entry, label, paths, files, on_change }) {
+const at_once = 6; // pictures that are seen first; the others come when they are scrolled to
+
+function Card({ entry, index, label, paths, files, on_change }) {
     const { api, announce } = use_app();
     const [problem, set_problem] = useState(null);
     const remove = async () => {
@@ -70,7 +72,7 @@ function Card({ entry, label, paths, files, on_change }) {
     const field = entry.kind === 'model' ? 'hair' : 'environment';
     const bake = `#/bake?${field}=${entry.id}`;
     return html`<article class="card" data-id=${entry.id}>
-        <img src=${entry.links.thumbnail} alt="" loading="lazy" width="256" height=${entry.kind === 'model' ? 256 : 128} />
+        <img src=${entry.links.thumbnail} alt="" loading=${index < at_once ? null : 'lazy'} width="256" height=${entry.kind === 'model' ? 256 : 128} />
         <h3>${label}</h3>
         <${Names} kind=${entry.kind} paths=${paths} />
         <p>${summary(entry)}</p>
@@ -94,7 +96,7 @@ export function Gallery({ kind, label, accept, empty }) {
         ${!items && html`<${Loading} what="the gallery" />`}
         ${items?.length === 0 && !problem && html`<p>${empty}</p>`}
         <div class="gallery">
-            ${(items ?? []).map((entry) => html`<${Card} key=${entry.id} entry=${entry} label=${label_of(entry.id, names, files)}
+            ${(items ?? []).map((entry, index) => html`<${Card} key=${entry.id} entry=${entry} index=${index} label=${label_of(entry.id, names, files)}
                 paths=${names[entry.id]} files=${files} on_change=${reload} />`)}
         </div>
     </div>`;

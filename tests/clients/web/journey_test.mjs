@@ -126,6 +126,7 @@ test('the result shows maps, the value under the pointer, histogram and error ba
     for (let i = 0; i < 3; ++i) assert.ok(Math.abs(read[i] - expected[i]) <= 1e-4 * expected[i], `${read} is not ${expected}`); // five digits are shown
 
     const manifest = await daemon.json(`/v1/bakes/${first_bake}/files/manifest.json`);
+    await page.locator('.histogram').scrollIntoViewIfNeeded(); // it is fetched when it is seen
     const term = page.locator('.facts div', { hasText: 'Mean of A' }).locator('dd');
     // Half floats have 11 bits: each A is off by at most 2^-12 of itself, the mean not by more.
     assert.ok(Math.abs(Number(await term.innerText()) - manifest.transmittance.mean) < 1e-3 * manifest.transmittance.mean);

@@ -67,7 +67,25 @@ function use_dark() {
     return dark;
 }
 
+/** Whether the element of `ref` has come near what is seen, once it has. */
+function use_seen(ref) {
+    const [seen, set_seen] = useState(false);
+    useEffect(() => {
+        const observer = new IntersectionObserver((entries) => entries.some(({ isIntersecting }) => isIntersecting) && set_seen(true), { rootMargin: '100px' });
+        observer.observe(ref.current);
+        return () => observer.disconnect();
+    }, []);
+    return seen;
+}
+
+/** A of a large groom is many megabytes: it is fetched when somebody scrolls to it. */
 export function Histogram({ bake }) {
+    const place = useRef(null);
+    const seen = use_seen(place);
+    return html`<div class="histogram" ref=${place}>${seen && html`<${Chart} bake=${bake} />`}</div>`;
+}
+
+function Chart({ bake }) {
     const { api } = use_app();
     const dark = use_dark();
     const [{ numbers, count, problem }, take] = useState({});

@@ -100,11 +100,11 @@ export function MapView({ bake }) {
         );
     }, [bake]);
     const own = useMemo(() => set?.exposure(m), [set, m]);
-    if (!set) return problem ? html`<${ProblemNote} problem=${problem} />` : html`<${Loading} what="the maps" />`;
+    if (!set) return problem ? html`<${ProblemNote} problem=${problem} />` : html`<div class="maps"><div class="map-place"><${Loading} what="the maps" /></div></div>`;
     const stops = auto ? own : chosen;
     return html`<div class="maps">
         <div><p id="map-title"><strong>${set.title(m)}</strong></p>
-            <${Picture} set=${set} m=${m} kind=${kind} stops=${stops} on_texel=${set_texel} />
+            <div class="map-place"><${Picture} set=${set} m=${m} kind=${kind} stops=${stops} on_texel=${set_texel} /></div>
             ${texel && html`<${Readout} set=${set} m=${m} texel=${texel} />`}</div>
         <${MapControls} ...${{ set, m, set_m, kind, set_kind, stops, set_stops, auto, set_auto }} />
     </div>`;

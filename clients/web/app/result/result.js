@@ -33,11 +33,12 @@ function Timings({ manifest }) {
     return html`<h2>Time and memory</h2><${Facts} rows=${rows} />`;
 }
 
-function Previews({ bake }) {
+function Previews({ bake, manifest }) {
     const { api } = use_app();
     const sheets = bake.files.filter(({ name }) => /^preview_\w+\.png$/.test(name));
+    const size = (name) => manifest.files.find((file) => file.name === name)?.shape ?? []; // rows, columns
     return html`<div class="previews">${sheets.map(({ name }) => html`<details key=${name}><summary>Contact sheet: ${title_words(name.slice(8, -4))}</summary>
-        <img src=${api.file_url(bake.id, name)} alt=${`Contact sheet of the ${name.slice(8, -4)}`} loading="lazy" /></details>`)}</div>`;
+        <img src=${api.file_url(bake.id, name)} height=${size(name)[0]} width=${size(name)[1]} alt=${`Contact sheet of the ${name.slice(8, -4)}`} loading="lazy" /></details>`)}</div>`;
 }
 
 const without_raw = html`<p>This bake was made without the output <code>raw</code>; the contact sheets below show it.</p>`;
@@ -56,7 +57,7 @@ export function Result({ bake }) {
         <${Warnings} texts=${manifest.warnings ?? []} />
         ${bake.environment && html`<h2>Irradiance maps</h2>${has('maps.f16') ? html`<${MapView} bake=${bake.id} />` : without_raw}`}
         ${bake.model && html`<h2>Transmittance A</h2>${has('strands.bin') ? html`<${Histogram} bake=${bake.id} />` : without_raw}`}
-        <${Previews} bake=${bake} />
+        <${Previews} bake=${bake} manifest=${manifest} />
         <${ErrorBars} manifest=${manifest} />
         <${Timings} manifest=${manifest} />
         <h2>Files</h2>
