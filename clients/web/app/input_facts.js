@@ -30,11 +30,11 @@ function environment_rows(facts) {
         ['Mean radiance', vector_words(facts.mean_radiance)],
         ['Brightest pixel', vector_words(bright.radiance)],
         ['Direction to it', vector_words(bright.direction)],
-        ...(facts.sun ? [['Sun', sun_words(facts.sun)]] : []),
+        ...(facts.small_lights ? [['Sun or small lamps', lights_words(facts.small_lights)]] : []),
     ];
 }
 
-const sun_words = ({ pixels, share }) =>
+const lights_words = ({ pixels, share }) =>
     `${count_words(pixels, 'pixel holds', 'pixels hold')} ${number_words(100 * share, 2)} % of the light`;
 
 function model_rows(facts) {
@@ -62,7 +62,7 @@ export function warnings({ kind, facts }) {
     if (negative + nan + infinite > 0) texts.push('A bake refuses such pixels unless its invalid radiance is "clamp".');
     if (facts.low_dynamic_range && !texts.some((text) => text.includes('dynamic range')))
         texts.push('Its dynamic range is low: lamps are clipped.');
-    if (facts.sun) texts.push(`A sun: ${sun_words(facts.sun)}.`);
+    if (facts.small_lights) texts.push(`A sun or small lamps: ${lights_words(facts.small_lights)}.`);
     return texts;
 }
 

@@ -128,6 +128,7 @@ test('warnings tell of pixels that a bake refuses and of a low range', () => {
     const facts = { invalid_pixels: { negative: 3, nan: 1, infinite: 0 }, low_dynamic_range: true, warnings: ['x'] };
     assert.deepEqual(warnings({ kind: 'environment', facts }), ['x', '1 pixel infinite or not a number.',
         'A bake refuses such pixels unless its invalid radiance is "clamp".', 'Its dynamic range is low: lamps are clipped.']);
+    assert.deepEqual(warnings({ kind: 'environment', facts: { small_lights: { pixels: 14, share: 0.583 } } }), ['A sun or small lamps: 14 pixels hold 58 % of the light.']);
     assert.deepEqual(warnings({ kind: 'model', facts: { warnings: ['no width'] } }), ['no width']);
 });
 

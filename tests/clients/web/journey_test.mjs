@@ -166,6 +166,7 @@ test('the viewer turns the sky, and its light is baked', async () => {
 
 test('a set of bakes is baked again under another sky: the hair is not looked at again', async () => {
     await page.getByRole('link', { name: 'Bakes', exact: true }).click();
+    await page.locator('tbody tr').nth(1).waitFor();
     for (const box of await page.getByRole('checkbox').all()) await box.check();
     await keep_pictures('bakes');
     await page.getByRole('link', { name: /Re-bake 2 bakes/ }).or(page.getByRole('button', { name: /Re-bake 2 bakes/ })).click();
