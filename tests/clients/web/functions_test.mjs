@@ -7,10 +7,11 @@ import { build_request, differences, first_values, merged, with_value } from '..
 import { defaults_of, faults, fields_of, range_words } from '../../../clients/web/app/bake/schema.js';
 import { warnings } from '../../../clients/web/app/input_facts.js';
 import { face_direction, latlong_direction, layout_of, net_texel, texel_direction, texel_of } from '../../../clients/web/app/result/cube.js';
-import { half_value, half_values } from '../../../clients/web/app/result/half.js';
+import { half_values } from '../../../clients/web/app/result/half.js';
 import { srgb_byte } from '../../../clients/web/app/result/map_set.js';
 import { read_route } from '../../../clients/web/app/routes.js';
 import { Sha256 } from '../../../clients/web/app/uploads/sha256.js';
+import { from_half } from '../../../clients/web/viewer/half.js';
 import { bytes_words, name_from_file, number_words, seconds_words } from '../../../clients/web/app/words.js';
 
 const config = new URL('../../../config/', import.meta.url);
@@ -20,9 +21,9 @@ test('half floats mean what IEEE 754 says', () => {
     // sign, five bits of exponent (bias 15), ten of fraction
     for (const [bits, value] of [[0x0000, 0], [0x3c00, 1], [0xc000, -2], [0x3555, 0.333251953125], [0x7bff, 65504],
         [0x0400, 2 ** -14], [0x03ff, (1023 / 1024) * 2 ** -14], [0x0001, 2 ** -24], [0x7c00, Infinity], [0xfc00, -Infinity]])
-        assert.equal(half_value(bits), value);
-    assert.ok(Number.isNaN(half_value(0x7e00)));
-    assert.ok(Object.is(half_value(0x8000), -0));
+        assert.equal(from_half(bits), value);
+    assert.ok(Number.isNaN(from_half(0x7e00)));
+    assert.ok(Object.is(from_half(0x8000), -0));
     assert.deepEqual([...half_values(new Uint16Array([0, 0, 0, 0x3c00, 0, 0, 0, 0x4000]), 3, 4)], [1, 2]);
 });
 

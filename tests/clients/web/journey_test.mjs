@@ -6,7 +6,7 @@ import { existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync }
 import { tmpdir } from 'node:os';
 import { basename, join, resolve } from 'node:path';
 import { after, before, test } from 'node:test';
-import { half_value } from '../../../clients/web/app/result/half.js';
+import { from_half } from '../../../clients/web/viewer/half.js';
 import { launch, open_page, tests } from './browser.mjs';
 import { Daemon, hairbake, patience_ms } from './daemon.mjs';
 
@@ -121,7 +121,7 @@ test('the result shows maps, the value under the pointer, histogram and error ba
     const reply = await fetch(`${daemon.address}/v1/bakes/${first_bake}/files/maps.f16`);
     const halves = new Uint16Array(await reply.arrayBuffer());
     const at = ((4 * 8 + 4) * 8 + 4) * 4; // face 4, row 4, column 4 of the first map
-    const expected = [0, 1, 2].map((i) => half_value(halves[at + i]) * maps.scale);
+    const expected = [0, 1, 2].map((i) => from_half(halves[at + i]) * maps.scale);
     const read = (await page.locator('#texel-value').innerText()).split(', ').map(Number);
     for (let i = 0; i < 3; ++i) assert.ok(Math.abs(read[i] - expected[i]) <= 1e-4 * expected[i], `${read} is not ${expected}`); // five digits are shown
 

@@ -1,15 +1,11 @@
-// What the tests of the web page share: the staged files behind a small server on a free port, and a browser.
-import { execFileSync } from 'node:child_process';
+// What the tests of the viewer share: the staged files behind a small server on a free port, and a browser.
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { createServer } from 'node:http';
-import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
-import { extname, join, resolve } from 'node:path';
-import { fileURLToPath } from 'node:url';
+import { extname, join } from 'node:path';
+import { stage_page } from './daemon.mjs';
 
-const tests = fileURLToPath(new URL('../../', import.meta.url));
-const { chromium } = createRequire(join(tests, 'npm/package.json'))('playwright-core');
-const web = resolve(tests, '../clients/web');
+export { launch as open_browser } from './browser.mjs';
 
 const types = {
     '.html': 'text/html; charset=utf-8',
@@ -25,7 +21,7 @@ const policy =
 export function stage() {
     const parent = mkdtempSync(join(tmpdir(), 'hairbake-web-'));
     const folder = join(parent, 'site');
-    execFileSync(process.execPath, [join(web, 'stage.mjs'), folder]);
+    stage_page(folder);
     return { folder, remove: () => rmSync(parent, { recursive: true, force: true }) };
 }
 
@@ -64,26 +60,6 @@ function file_at(folder, path) {
 
 export function json(object, status = 200) {
     return { status, type: 'application/json', body: JSON.stringify(object) };
-}
-
-/** Debian's Chromium, drawing in software. */
-export function open_browser() {
-    return chromium.launch({
-        executablePath: '/usr/bin/chromium',
-        headless: true,
-        args: [
-            '--headless',
-            '--no-sandbox',
-            '--disable-quic',
-            '--no-first-run',
-            '--disable-background-networking',
-            '--disable-component-update',
-            '--disable-sync',
-            '--use-gl=angle',
-            '--use-angle=swiftshader',
-            '--enable-unsafe-swiftshader',
-        ],
-    });
 }
 
 /** A new page whose console errors, exceptions and failed requests are collected in `page.problems`. */
