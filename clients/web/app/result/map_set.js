@@ -14,7 +14,7 @@ export class MapSet {
     /** Linear RGB of a texel of map `m`. */
     value(m, { face, i, j }) {
         const at = this.maps[m].offset / 2 + ((face * this.face_size + j) * this.face_size + i) * 4;
-        return [0, 1, 2].map((channel) => from_half(this.halves[at + channel]) * this.scale);
+        return [0, 1, 2].map(channel => from_half(this.halves[at + channel]) * this.scale);
     }
 
     /** The stops that bring the brightest texel of map `m` to just below white. */
