@@ -76,6 +76,28 @@ Json brightest_pixel(const EnvironmentMap& map) {
     return facts;
 }
 
+/// A sun or small lamps: the pixels of at least an eighth of the largest radiance, where together they are smaller than
+/// a disc 9 degrees across (0.02 sr) and hold at least a twentieth of the light; null elsewhere.
+Json small_lights(const EnvironmentMap& map) {
+    const auto sum = [](const Vec3f& c) { return double(c.x) + c.y + c.z; };
+    double largest = 0;
+    for (const Vec3f& pixel : map.pixels) largest = std::max(largest, sum(pixel));
+    const TexelSolidAngles solid_angles = texel_solid_angles(map);
+    double total = 0, held = 0, size = 0;
+    std::size_t pixels = 0;
+    for (int y = 0; y < map.height; ++y)
+        for (int x = 0; x < map.width; ++x) {
+            const double radiance = sum(map.pixels[std::size_t(y) * map.width + x]), angle = solid_angles.at(x, y);
+            total += radiance * angle;
+            if (radiance < largest / 8) continue;
+            held += radiance * angle;
+            size += angle;
+            ++pixels;
+        }
+    if (total <= 0 || held < 0.05 * total || size > 0.02) return nullptr;
+    return {{"pixels", pixels}, {"share", held / total}};
+}
+
 Json mean_radiance(const EnvironmentMap& map) {
     const TexelSolidAngles solid_angles = texel_solid_angles(map);
     Vec3d sum;
@@ -98,6 +120,7 @@ Json environment_facts(const fs::path& file, Progress& progress) {
     facts["low_dynamic_range"] = map.low_dynamic_range;
     facts["mean_radiance"] = mean_radiance(map);
     facts["brightest_pixel"] = brightest_pixel(map);
+    if (const Json lights = small_lights(map); !lights.is_null()) facts["small_lights"] = lights;
     const RadianceRepairs& repairs = map.repairs;
     facts["invalid_pixels"] = {
         {"negative", repairs.negative_pixels}, {"nan", repairs.nan_pixels}, {"infinite", repairs.infinite_pixels}};

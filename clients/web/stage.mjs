@@ -23,7 +23,10 @@ function stage(folder) {
     for (const name of readdirSync(source))
         if (!not_served.has(name)) cpSync(join(source, name), join(folder, name), { recursive: true });
     for (const [name, from] of Object.entries(vendor))
-        writeFileSync(join(folder, 'vendor', name), without_map(readFileSync(join(source, 'node_modules', from), 'utf8')));
+        writeFileSync(
+            join(folder, 'vendor', name),
+            without_map(readFileSync(join(source, 'node_modules', from), 'utf8')),
+        );
     const index = join(folder, 'index.html');
     if (existsSync(index)) writeFileSync(index, with_preloads(readFileSync(index, 'utf8'), folder));
 }
@@ -36,7 +39,7 @@ function without_map(text) {
 // The modules that the first page is made of, so that a browser asks for all of them at once instead of level by level.
 function with_preloads(html, folder) {
     const modules = new Set();
-    const add = (name) => {
+    const add = name => {
         if (modules.has(name)) return;
         modules.add(name);
         const text = readFileSync(join(folder, name), 'utf8');
@@ -45,7 +48,7 @@ function with_preloads(html, folder) {
     };
     add('app/main.js');
     add('app/pages/environments_page.js');
-    const links = [...modules].map((name) => `<link rel="modulepreload" href="{assets}/${name}">`);
+    const links = [...modules].map(name => `<link rel="modulepreload" href="{assets}/${name}">`);
     return html.replace('<!-- preload -->', links.join('\n'));
 }
 

@@ -20,7 +20,7 @@ async function problem_of(reply) {
 }
 
 function pause(milliseconds, signal) {
-    return new Promise((resolve) => {
+    return new Promise(resolve => {
         const timer = setTimeout(resolve, milliseconds);
         signal.addEventListener('abort', () => (clearTimeout(timer), resolve()), { once: true });
     });
@@ -41,11 +41,13 @@ export function make_api(on_locked) {
         if (problem.status === 401) on_locked();
         throw problem;
     }
-    const with_body = (method) => async (path, object, query = '') => {
-        const headers = { 'Content-Type': 'application/json' };
-        const reply = await ask(path + query, { method, headers, body: JSON.stringify(object) });
-        return reply.status === 204 ? null : reply.json();
-    };
+    const with_body =
+        method =>
+        async (path, object, query = '') => {
+            const headers = { 'Content-Type': 'application/json' };
+            const reply = await ask(path + query, { method, headers, body: JSON.stringify(object) });
+            return reply.status === 204 ? null : reply.json();
+        };
 
     const api = {
         ask,

@@ -23,12 +23,15 @@ export function use_inputs(kind) {
 function NameForm({ entry, suggestion, on_named }) {
     const { api, announce } = use_app();
     const [problem, set_problem] = useState(null);
-    const save = async (event) => {
+    const save = async event => {
         event.preventDefault();
         const form = new FormData(event.target);
         const path = form.get('path').trim();
         try {
-            const { version } = await api.put(name_address(entry.kind, path), { sha256: entry.id, note: form.get('note') });
+            const { version } = await api.put(name_address(entry.kind, path), {
+                sha256: entry.id,
+                note: form.get('note'),
+            });
             announce(`${path} is now version ${version}.`);
             on_named();
         } catch (failure) {
@@ -37,9 +40,11 @@ function NameForm({ entry, suggestion, on_named }) {
     };
     return html`<form onSubmit=${save}>
         <label>Name
-            <input name="path" required maxlength="200" pattern="[A-Za-z0-9._\\-]+(/[A-Za-z0-9._\\-]+)*" value=${suggestion}
+            <input name="path" required maxlength="200" pattern="[A-Za-z0-9._\\-]+(/[A-Za-z0-9._\\-]+)*"
+                value=${suggestion}
                 aria-describedby=${`help-${entry.id}`} />
-            <small id=${`help-${entry.id}`}>Letters, digits, ".", "_", "-", and "/" between parts. A name that is taken gets a new version.</small>
+            <small id=${`help-${entry.id}`}>Letters, digits, ".", "_", "-", and "/" between parts.
+                A name that is taken gets a new version.</small>
         </label>
         <label>Note <input name="note" maxlength="500" /></label>
         <${ProblemNote} problem=${problem} />
@@ -51,10 +56,13 @@ export const name_address = (kind, path) => `/v1/names/${kind}/${path.split('/')
 
 function Names({ kind, paths }) {
     if (!paths) return null;
-    return html`<p class="names">${paths.map((path, i) => html`${i > 0 && ', '}<a key=${path} href=${`#/names/${kind}/${path}`}>${path}</a>`)}</p>`;
+    return html`<p class="names">${paths.map((path, i) => html`${i > 0 && ', '}<a key=${path}
+        href=${`#/names/${kind}/${path}`}>${path}</a>`)}</p>`;
 }
 
-function Card({ entry, label, paths, files, on_change }) {
+const at_once = 6; // pictures that are seen first; the others come when they are scrolled to
+
+function Card({ entry, index, label, paths, files, on_change }) {
     const { api, announce } = use_app();
     const [problem, set_problem] = useState(null);
     const remove = async () => {
@@ -70,17 +78,20 @@ function Card({ entry, label, paths, files, on_change }) {
     const field = entry.kind === 'model' ? 'hair' : 'environment';
     const bake = `#/bake?${field}=${entry.id}`;
     return html`<article class="card" data-id=${entry.id}>
-        <img src=${entry.links.thumbnail} alt="" loading="lazy" width="256" height=${entry.kind === 'model' ? 256 : 128} />
+        <img src=${entry.links.thumbnail} alt="" loading=${index < at_once ? null : 'lazy'} width="256"
+            height=${entry.kind === 'model' ? 256 : 128} />
         <h3>${label}</h3>
         <${Names} kind=${entry.kind} paths=${paths} />
         <p>${summary(entry)}</p>
         <${Warnings} texts=${warnings(entry)} />
         <p class="actions"><a role="button" class="small" href=${bake} aria-label=${`Bake with ${label}`}>Bake</a>
-            <button class="small secondary outline" onClick=${remove} aria-label=${`Delete ${label}`}>Delete</button></p>
+            <button class="small secondary outline" onClick=${remove} aria-label=${`Delete ${label}`}>Delete</button>
+                </p>
         <${ProblemNote} problem=${problem} />
         <details><summary>Facts</summary><${Facts} rows=${fact_rows(entry)} /></details>
         <details><summary>Name it</summary>
-            <${NameForm} entry=${entry} suggestion=${paths?.[0] ?? name_from_file(files[entry.id] ?? '')} on_named=${on_change} />
+            <${NameForm} entry=${entry} suggestion=${paths?.[0] ?? name_from_file(files[entry.id] ?? '')}
+                on_named=${on_change} />
         </details>
     </article>`;
 }
@@ -94,8 +105,14 @@ export function Gallery({ kind, label, accept, empty }) {
         ${!items && html`<${Loading} what="the gallery" />`}
         ${items?.length === 0 && !problem && html`<p>${empty}</p>`}
         <div class="gallery">
-            ${(items ?? []).map((entry) => html`<${Card} key=${entry.id} entry=${entry} label=${label_of(entry.id, names, files)}
-                paths=${names[entry.id]} files=${files} on_change=${reload} />`)}
+            ${(items ?? []).map(
+                (
+                    entry,
+                    index,
+                ) => html`<${Card} key=${entry.id} entry=${entry} index=${index}
+                    label=${label_of(entry.id, names, files)}
+                paths=${names[entry.id]} files=${files} on_change=${reload} />`,
+            )}
         </div>
     </div>`;
 }

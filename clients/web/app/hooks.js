@@ -14,22 +14,24 @@ export function use_json(path) {
         if (path === null) return undefined;
         const abort = new AbortController();
         api.json(path, { signal: abort.signal }).then(
-            (value) => set_state({ value }),
-            (problem) => abort.signal.aborted || set_state({ problem }),
+            value => set_state({ value }),
+            problem => abort.signal.aborted || set_state({ problem }),
         );
         return () => abort.abort();
     }, [path, round]);
-    return { ...state, reload: useCallback(() => set_round((n) => n + 1), []) };
+    return { ...state, reload: useCallback(() => set_round(n => n + 1), []) };
 }
 
-/** { value, problem } of a GET that is asked again every `every_ms` until `ended(value)`; another `round` begins anew. */
+/**
+ * { value, problem } of a GET that is asked again every `every_ms` until `ended(value)`; another `round` begins anew.
+ */
 export function use_watch(path, every_ms, ended = () => false, round = 0) {
     const { api } = use_app();
     const [state, set_state] = useState({});
     useEffect(() => {
         const abort = new AbortController();
-        const take = (value) => (set_state({ value }), ended(value));
-        api.watch(path, every_ms, take, (problem) => set_state((old) => ({ ...old, problem })), abort.signal);
+        const take = value => (set_state({ value }), ended(value));
+        api.watch(path, every_ms, take, problem => set_state(old => ({ ...old, problem })), abort.signal);
         return () => abort.abort();
     }, [path, round]);
     return state;
@@ -38,7 +40,7 @@ export function use_watch(path, every_ms, ended = () => false, round = 0) {
 /** Every item of a list that comes in pages (at most `most`), asked for once. */
 export async function all_pages(api, path, key, most = 1000) {
     const items = [];
-    for (let cursor = ''; items.length < most; ) {
+    for (let cursor = ''; items.length < most;) {
         const page = await api.json(path + (path.includes('?') ? '&' : '?') + `limit=200${cursor}`);
         items.push(...page[key]);
         if (!page.next) break;
@@ -55,10 +57,10 @@ export function use_list(path, key) {
     useEffect(() => {
         let live = true;
         all_pages(api, path, key).then(
-            (items) => live && set_state({ items }),
-            (problem) => live && set_state({ items: [], problem }),
+            items => live && set_state({ items }),
+            problem => live && set_state({ items: [], problem }),
         );
         return () => (live = false);
     }, [path, key, round]);
-    return { ...state, reload: useCallback(() => set_round((n) => n + 1), []) };
+    return { ...state, reload: useCallback(() => set_round(n => n + 1), []) };
 }

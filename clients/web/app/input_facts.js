@@ -10,14 +10,19 @@ const layout_words = {
     faces: 'six faces',
 };
 
-const vector_words = (v) => v.map((x) => number_words(x, 3)).join(', ');
+const vector_words = v => v.map(x => number_words(x, 3)).join(', ');
 const range_words = ({ minimum, maximum, default: one }) =>
-    minimum === undefined ? number_words(one) : minimum === maximum ? number_words(minimum) : `${number_words(minimum)} to ${number_words(maximum)}`;
+    minimum === undefined
+        ? number_words(one)
+        : minimum === maximum
+          ? number_words(minimum)
+          : `${number_words(minimum)} to ${number_words(maximum)}`;
 
 /** One line below the thumbnail. */
 export function summary({ kind, facts, bytes }) {
     const size = bytes_words(bytes);
-    if (kind === 'model') return `${count_words(facts.strands, 'strand')}, ${count_words(facts.vertices, 'vertex', 'vertices')}, ${size}`;
+    if (kind === 'model')
+        return `${count_words(facts.strands, 'strand')}, ${count_words(facts.vertices, 'vertex', 'vertices')}, ${size}`;
     const pixels = facts.face_size ? `${facts.face_size} x ${facts.face_size} x 6` : `${facts.width} x ${facts.height}`;
     return `${pixels} ${layout_words[facts.layout] ?? facts.layout}, ${facts.format}, ${size}`;
 }
@@ -25,23 +30,28 @@ export function summary({ kind, facts, bytes }) {
 function environment_rows(facts) {
     const bright = facts.brightest_pixel;
     return [
-        ['Layout', `${layout_words[facts.layout] ?? facts.layout}: guessed from the shape unless the bake says otherwise`],
+        [
+            'Layout',
+            `${layout_words[facts.layout] ?? facts.layout}: guessed from the shape unless the bake says otherwise`,
+        ],
         ['Primaries', facts.primaries],
         ['Mean radiance', vector_words(facts.mean_radiance)],
         ['Brightest pixel', vector_words(bright.radiance)],
         ['Direction to it', vector_words(bright.direction)],
-        ...(facts.sun ? [['Sun', sun_words(facts.sun)]] : []),
+        ...(facts.small_lights ? [['Sun or small lamps', lights_words(facts.small_lights)]] : []),
     ];
 }
 
-const sun_words = ({ pixels, share }) =>
+const lights_words = ({ pixels, share }) =>
     `${count_words(pixels, 'pixel holds', 'pixels hold')} ${number_words(100 * share, 2)} % of the light`;
 
 function model_rows(facts) {
     return [
         ['Format', facts.format],
         ['Longest strand', count_words(facts.longest_strand, 'vertex', 'vertices')],
-        ...(facts.bounds ? [['Bounds', `${vector_words(facts.bounds.minimum)} to ${vector_words(facts.bounds.maximum)}`]] : []),
+        ...(facts.bounds
+            ? [['Bounds', `${vector_words(facts.bounds.minimum)} to ${vector_words(facts.bounds.maximum)}`]]
+            : []),
         ['Strand width', range_words(facts.thickness)],
         ['Transparency', range_words(facts.transparency)],
         ...(facts.info ? [['Its own words', facts.info]] : []),
@@ -60,9 +70,9 @@ export function warnings({ kind, facts }) {
     const { negative = 0, nan = 0, infinite = 0 } = facts.invalid_pixels ?? {};
     if (nan + infinite > 0) texts.push(`${count_words(nan + infinite, 'pixel')} infinite or not a number.`);
     if (negative + nan + infinite > 0) texts.push('A bake refuses such pixels unless its invalid radiance is "clamp".');
-    if (facts.low_dynamic_range && !texts.some((text) => text.includes('dynamic range')))
+    if (facts.low_dynamic_range && !texts.some(text => text.includes('dynamic range')))
         texts.push('Its dynamic range is low: lamps are clipped.');
-    if (facts.sun) texts.push(`A sun: ${sun_words(facts.sun)}.`);
+    if (facts.small_lights) texts.push(`A sun or small lamps: ${lights_words(facts.small_lights)}.`);
     return texts;
 }
 

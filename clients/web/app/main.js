@@ -20,16 +20,18 @@ function Navigation({ current }) {
         <nav aria-label="Pages">
             <ul><li><strong><a href="#/" class="contrast">hairbake</a></strong></li></ul>
             <ul class="sections">
-                ${sections.map(([name, title]) => html`<li key=${name}>
+                ${sections.map(
+                    ([name, title]) => html`<li key=${name}>
                     <a href=${`#/${name}`} aria-current=${name === current ? 'page' : null}>${title}</a>
-                </li>`)}
+                </li>`,
+                )}
                 <${SignOut} />
             </ul>
         </nav>
     </header>`;
 }
 
-/** The page's module is loaded first; then the focus goes to its heading, so that a screen reader tells where one is. */
+/** The focus goes to a new page's heading, so that a screen reader tells where one is. */
 function Page({ route, first }) {
     const page = page_of(route.path);
     const [state, set_state] = useState({});
@@ -41,8 +43,8 @@ function Page({ route, first }) {
         if (!page) return undefined;
         let live = true;
         page.load().then(
-            (module) => live && set_state({ key, Content: module.default }),
-            (problem) => live && set_state({ key, problem }),
+            module => live && set_state({ key, Content: module.default }),
+            problem => live && set_state({ key, problem }),
         );
         return () => (live = false);
     }, [key]);
@@ -70,7 +72,7 @@ function App() {
     const [message, set_message] = useState('');
     const app = useMemo(() => {
         const api = make_api(() => set_locked(true));
-        const announce = (text) => set_message(text);
+        const announce = text => set_message(text);
         return { api, announce, uploads: new Uploads(api, announce) };
     }, []);
     const unlock = () => {
@@ -81,9 +83,11 @@ function App() {
     return html`<${AppContext.Provider} value=${app}>
         <a class="skip" href="#main" onClick=${skip}>Skip to the content</a>
         <${Navigation} current=${route.path[0] ?? 'environments'} />
-        ${locked
-            ? html`<main class="container" id="main"><${TokenForm} on_open=${unlock} /></main>`
-            : html`<${Page} route=${route} first=${first} />`}
+        ${
+            locked
+                ? html`<main class="container" id="main"><${TokenForm} on_open=${unlock} /></main>`
+                : html`<${Page} route=${route} first=${first} />`
+        }
         <div class="visually-hidden" role="status">${message}</div>
     <//>`;
 }

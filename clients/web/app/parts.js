@@ -20,13 +20,19 @@ export function Facts({ rows }) {
 export function Warnings({ texts }) {
     if (!texts.length) return null;
     return html`<ul class="warnings" aria-label="Warnings">
-        ${texts.map((text) => html`<li key=${text}>${text}</li>`)}
+        ${texts.map(text => html`<li key=${text}>${text}</li>`)}
     </ul>`;
+}
+
+/** The head of a table. */
+export function Heads({ titles }) {
+    return html`<thead><tr>${titles.map(title => html`<th scope="col" key=${title}>${title}</th>`)}</tr></thead>`;
 }
 
 const state_marks = { queued: '◷', running: '▶', done: '✓', failed: '✕', cancelled: '–' };
 
 /** A state by word and sign, not by colour alone. */
 export function State({ state }) {
-    return html`<span class=${`state state-${state}`}><span aria-hidden="true">${state_marks[state] ?? ''}</span> ${state}</span>`;
+    return html`<span class=${`state state-${state}`}><span aria-hidden="true">${state_marks[state] ?? ''}
+        </span> ${state}</span>`;
 }

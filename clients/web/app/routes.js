@@ -3,7 +3,7 @@
 /** "#/bake?model=x" -> { path: ['bake'], query: { model: 'x' } } */
 export function read_route(hash) {
     const [path, query = ''] = hash.replace(/^#\/?/, '').split('?');
-    const decode = (text) => {
+    const decode = text => {
         try {
             return decodeURIComponent(text);
         } catch {
@@ -20,11 +20,11 @@ export function read_route(hash) {
 const pages = {
     environments: { load: () => import('./pages/environments_page.js'), title: () => 'Environments' },
     models: { load: () => import('./pages/models_page.js'), title: () => 'Hair models' },
-    names: { load: () => import('./pages/name_page.js'), title: (path) => path.slice(2).join('/') || 'Names' },
+    names: { load: () => import('./pages/name_page.js'), title: path => path.slice(2).join('/') || 'Names' },
     bake: { load: () => import('./pages/bake_page.js'), title: () => 'New bake' },
     bakes: {
-        load: (path) => (path[1] ? import('./pages/one_bake_page.js') : import('./pages/bakes_page.js')),
-        title: (path) => (path[1] ? `Bake ${path[1].slice(0, 10)}` : 'Bakes'),
+        load: path => (path[1] ? import('./pages/one_bake_page.js') : import('./pages/bakes_page.js')),
+        title: path => (path[1] ? `Bake ${path[1].slice(0, 10)}` : 'Bakes'),
     },
     rebake: { load: () => import('./pages/rebake_page.js'), title: () => 'Re-bake' },
     batches: { load: () => import('./pages/batch_page.js'), title: () => 'Batch' },

@@ -8,7 +8,7 @@ const flag = 'hairbake.session';
 export function TokenForm({ on_open }) {
     const { api } = use_app();
     const [problem, set_problem] = useState(null);
-    const open = async (event) => {
+    const open = async event => {
         event.preventDefault();
         const token = new FormData(event.target).get('token').trim();
         try {
@@ -16,7 +16,11 @@ export function TokenForm({ on_open }) {
             localStorage.setItem(flag, 'open');
             on_open();
         } catch (failure) {
-            set_problem(failure.status === 401 ? { message: 'The service does not know this token, or it has expired.' } : failure);
+            set_problem(
+                failure.status === 401
+                    ? { message: 'The service does not know this token, or it has expired.' }
+                    : failure,
+            );
         }
     };
     return html`<form class="narrow" onSubmit=${open}>

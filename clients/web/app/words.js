@@ -28,23 +28,33 @@ export function number_words(value, digits = 4) {
     return String(Number(value.toPrecision(digits)));
 }
 
-export const count_words = (count, one, many = `${one}s`) => `${count.toLocaleString('en')} ${count === 1 ? one : many}`;
+export const count_words = (count, one, many = `${one}s`) =>
+    `${count.toLocaleString('en')} ${count === 1 ? one : many}`;
 
-export const short_digest = (digest) => digest.slice(0, 10);
+export const short_digest = digest => digest.slice(0, 10);
 
 export function time_words(iso) {
     const time = new Date(iso);
-    return Number.isNaN(time.getTime()) ? iso : time.toLocaleString('en-GB', { dateStyle: 'medium', timeStyle: 'short' });
+    return Number.isNaN(time.getTime())
+        ? iso
+        : time.toLocaleString('en-GB', { dateStyle: 'medium', timeStyle: 'short' });
 }
 
 /** "face_size" -> "Face size". */
 export function title_words(name) {
-    const text = name.replaceAll('_', ' ').replace(/\bsh\b/, 'SH').replace(/\bdeg$/, '').trim();
+    const text = name
+        .replaceAll('_', ' ')
+        .replace(/\bsh\b/, 'SH')
+        .replace(/\bdeg$/, '')
+        .trim();
     return text[0].toUpperCase() + text.slice(1);
 }
 
 /** A file's name as a name in the service: letters, digits, '.', '_', '-' (names.cpp). */
 export function name_from_file(file_name) {
     const stem = file_name.replace(/\.[^.]{1,5}$/, '');
-    return stem.replace(/[^A-Za-z0-9._-]+/g, '-').replace(/^[-.]+|[-.]+$/g, '').slice(0, 100);
+    return stem
+        .replace(/[^A-Za-z0-9._-]+/g, '-')
+        .replace(/^[-.]+|[-.]+$/g, '')
+        .slice(0, 100);
 }

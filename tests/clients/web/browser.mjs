@@ -1,4 +1,4 @@
-// Headless Chromium of the Debian package, which reports what a page must not do: errors, requests that leave the origin.
+// Headless Chromium of the Debian package, which reports what a page must not do.
 import { createRequire } from 'node:module';
 import { dirname, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -9,23 +9,34 @@ const { chromium } = require_tool('playwright-core');
 
 export const chromium_path = '/usr/bin/chromium';
 export const chromium_flags = [
-    '--headless', '--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking',
-    '--disable-component-update', '--disable-sync', '--use-gl=angle', '--use-angle=swiftshader',
+    '--headless',
+    '--no-sandbox',
+    '--disable-quic',
+    '--no-first-run',
+    '--disable-background-networking',
+    '--disable-component-update',
+    '--disable-sync',
+    '--use-gl=angle',
+    '--use-angle=swiftshader',
     '--enable-unsafe-swiftshader',
 ];
 
 export const launch = () => chromium.launch({ executablePath: chromium_path, headless: true, args: chromium_flags });
 
-/** A page and the list of its faults: errors in scripts, refused by the Content-Security-Policy, requests to elsewhere. */
+/** A page and the list of its faults: errors in scripts, what the policy refused, requests to elsewhere. */
 export async function open_page(browser, origin, options = {}) {
-    const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, reducedMotion: 'reduce', ...options });
+    const context = await browser.newContext({
+        viewport: { width: 1280, height: 720 },
+        reducedMotion: 'reduce',
+        ...options,
+    });
     const page = await context.newPage();
     const faults = [];
-    page.on('pageerror', (error) => faults.push(`error: ${error.stack ?? error.message}`));
-    page.on('console', (message) => {
+    page.on('pageerror', error => faults.push(`error: ${error.stack ?? error.message}`));
+    page.on('console', message => {
         if (/Content.Security.Policy/i.test(message.text())) faults.push(message.text());
     });
-    context.on('request', (request) => {
+    context.on('request', request => {
         const url = new URL(request.url());
         if (url.protocol.startsWith('http') && url.origin !== origin) faults.push(`asked elsewhere: ${request.url()}`);
     });

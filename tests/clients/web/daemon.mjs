@@ -30,11 +30,16 @@ export class Daemon {
         daemon.folder = mkdtempSync(join(tmpdir(), 'hairbake-page-'));
         stage_page(join(daemon.folder, 'web'));
         const config = join(daemon.folder, 'hairbake.toml');
-        writeFileSync(config, '[listen]\nport = 0\n[store]\nfolder = "store"\n[workers]\ncount = 1\nthreads = 1\n' +
-            `[web]\nfolder = "web"\n${tokens}`);
-        daemon.process = spawn(join(programs, 'hairbaked'), ['--config', config], { stdio: ['ignore', 'pipe', 'pipe'] });
+        writeFileSync(
+            config,
+            '[listen]\nport = 0\n[store]\nfolder = "store"\n[workers]\ncount = 1\nthreads = 1\n' +
+                `[web]\nfolder = "web"\n${tokens}`,
+        );
+        daemon.process = spawn(join(programs, 'hairbaked'), ['--config', config], {
+            stdio: ['ignore', 'pipe', 'pipe'],
+        });
         let log = '';
-        daemon.process.stderr.on('data', (text) => (log += text));
+        daemon.process.stderr.on('data', text => (log += text));
         for await (const line of createInterface({ input: daemon.process.stdout })) {
             daemon.address = line.match(/listens on (http:\S+)/)?.[1];
             if (daemon.address) break;
@@ -44,7 +49,7 @@ export class Daemon {
     }
 
     async stop() {
-        const ended = new Promise((done) => this.process.once('exit', done));
+        const ended = new Promise(done => this.process.once('exit', done));
         this.process.kill('SIGTERM');
         await ended;
         rmSync(this.folder, { recursive: true, force: true });
@@ -56,7 +61,11 @@ export class Daemon {
         return reply.json();
     }
     post(path, object) {
-        return this.json(path, { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(object) });
+        return this.json(path, {
+            method: 'POST',
+            headers: { 'Content-Type': 'application/json' },
+            body: JSON.stringify(object),
+        });
     }
 
     /** Sends a file and has it read; returns its digest. */
@@ -72,7 +81,7 @@ export class Daemon {
 
     /** The bake's view once it is done. */
     async finished(id) {
-        for (const end = Date.now() + patience_ms; Date.now() < end; await new Promise((done) => setTimeout(done, 100))) {
+        for (const end = Date.now() + patience_ms; Date.now() < end; await new Promise(done => setTimeout(done, 100))) {
             const bake = await this.json(`/v1/bakes/${id}`);
             if (bake.state === 'done') return bake;
             if (bake.state === 'failed' || bake.state === 'cancelled') throw new Error(JSON.stringify(bake.error));

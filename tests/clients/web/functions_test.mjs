@@ -6,11 +6,19 @@ import { test } from 'node:test';
 import { build_request, differences, first_values, merged, with_value } from '../../../clients/web/app/bake/request.js';
 import { defaults_of, faults, fields_of, range_words } from '../../../clients/web/app/bake/schema.js';
 import { warnings } from '../../../clients/web/app/input_facts.js';
-import { face_direction, latlong_direction, layout_of, net_texel, texel_direction, texel_of } from '../../../clients/web/app/result/cube.js';
-import { half_value, half_values } from '../../../clients/web/app/result/half.js';
+import {
+    face_direction,
+    latlong_direction,
+    layout_of,
+    net_texel,
+    texel_direction,
+    texel_of,
+} from '../../../clients/web/app/result/cube.js';
+import { half_values } from '../../../clients/web/app/result/half.js';
 import { srgb_byte } from '../../../clients/web/app/result/map_set.js';
 import { read_route } from '../../../clients/web/app/routes.js';
 import { Sha256 } from '../../../clients/web/app/uploads/sha256.js';
+import { from_half } from '../../../clients/web/viewer/half.js';
 import { bytes_words, name_from_file, number_words, seconds_words } from '../../../clients/web/app/words.js';
 
 const config = new URL('../../../config/', import.meta.url);
@@ -18,18 +26,30 @@ const schema = JSON.parse(readFileSync(new URL('request.schema.json', config)));
 
 test('half floats mean what IEEE 754 says', () => {
     // sign, five bits of exponent (bias 15), ten of fraction
-    for (const [bits, value] of [[0x0000, 0], [0x3c00, 1], [0xc000, -2], [0x3555, 0.333251953125], [0x7bff, 65504],
-        [0x0400, 2 ** -14], [0x03ff, (1023 / 1024) * 2 ** -14], [0x0001, 2 ** -24], [0x7c00, Infinity], [0xfc00, -Infinity]])
-        assert.equal(half_value(bits), value);
-    assert.ok(Number.isNaN(half_value(0x7e00)));
-    assert.ok(Object.is(half_value(0x8000), -0));
+    for (const [bits, value] of [
+        [0x0000, 0],
+        [0x3c00, 1],
+        [0xc000, -2],
+        [0x3555, 0.333251953125],
+        [0x7bff, 65504],
+        [0x0400, 2 ** -14],
+        [0x03ff, (1023 / 1024) * 2 ** -14],
+        [0x0001, 2 ** -24],
+        [0x7c00, Infinity],
+        [0xfc00, -Infinity],
+    ])
+        assert.equal(from_half(bits), value);
+    assert.ok(Number.isNaN(from_half(0x7e00)));
+    assert.ok(Object.is(from_half(0x8000), -0));
     assert.deepEqual([...half_values(new Uint16Array([0, 0, 0, 0x3c00, 0, 0, 0, 0x4000]), 3, 4)], [1, 2]);
 });
 
 test('a direction through any texel finds that texel', () => {
     const n = 5;
     for (let face = 0; face < 6; ++face)
-        for (let j = 0; j < n; ++j) for (let i = 0; i < n; ++i) assert.deepEqual(texel_of(texel_direction({ face, i, j }, n), n), { face, i, j });
+        for (let j = 0; j < n; ++j)
+            for (let i = 0; i < n; ++i)
+                assert.deepEqual(texel_of(texel_direction({ face, i, j }, n), n), { face, i, j });
 });
 
 test('neighbours in the net are neighbours on the cube', () => {
@@ -47,14 +67,17 @@ test('neighbours in the net are neighbours on the cube', () => {
         }
     assert.equal(edges, 3 * n); // the middle row has three edges between four faces
     const middle = (c, r) => net_texel(c * n + 1, r * n + 1, n)?.face;
-    assert.deepEqual([middle(1, 0), middle(0, 1), middle(1, 1), middle(2, 1), middle(3, 1), middle(1, 2), middle(0, 0)], [2, 1, 4, 0, 5, 3, undefined]);
+    assert.deepEqual(
+        [middle(1, 0), middle(0, 1), middle(1, 1), middle(2, 1), middle(3, 1), middle(1, 2), middle(0, 0)],
+        [2, 1, 4, 0, 5, 3, undefined],
+    );
     // +Y lies above +Z: its lowest row looks almost along +Z.
     const above = texel_direction(net_texel(n + n / 2, n - 1, n), n);
     assert.ok(above[1] > 0.7 && above[2] > 0.65);
 });
 
 test('the lat-long picture has +Y on top, +X in the centre, +Z right of it', () => {
-    const at = (x, y) => latlong_direction(x, y, 400, 200).map((t) => Math.round(t * 50) / 50); // a pixel is 0.016
+    const at = (x, y) => latlong_direction(x, y, 400, 200).map(t => Math.round(t * 50) / 50); // a pixel is 0.016
     assert.deepEqual(at(199.5, 99.5), [1, 0, 0]);
     assert.deepEqual(at(299.5, 99.5), [0, 0, 1]);
     assert.deepEqual(at(99.5, 99.5).map(Math.abs), [0, 0, 1]);
@@ -64,7 +87,16 @@ test('the lat-long picture has +Y on top, +X in the centre, +Z right of it', () 
 
 test('sRGB bytes are those of IEC 61966-2-1', () => {
     // ((128 / 255 + 0.055) / 1.055)^2.4 = 0.21586
-    for (const [value, byte] of [[0, 0], [-1, 0], [NaN, 0], [1, 255], [7, 255], [0.21586, 128], [0.001, 3]]) assert.equal(srgb_byte(value), byte);
+    for (const [value, byte] of [
+        [0, 0],
+        [-1, 0],
+        [NaN, 0],
+        [1, 255],
+        [7, 255],
+        [0.21586, 128],
+        [0.001, 3],
+    ])
+        assert.equal(srgb_byte(value), byte);
 });
 
 test('SHA-256 in pieces is that of node, whatever the pieces', () => {
@@ -85,7 +117,8 @@ test('every field of the schema has a help text, and what is a number has a rang
     assert.ok(fields.length > 30);
     for (const { path, schema: field } of fields) {
         assert.ok(field.description?.length > 5, path.join('.'));
-        if (field.type === 'number' || field.type === 'integer' || field.anyOf) assert.match(range_words(field), /^(more than )?[-\d.e+]+,? (up )?to /, path.join('.'));
+        if (field.type === 'number' || field.type === 'integer' || field.anyOf)
+            assert.match(range_words(field), /^(more than )?[-\d.e+]+,? (up )?to /, path.join('.'));
     }
 });
 
@@ -106,35 +139,63 @@ test('a preset and a change make a request of what differs', () => {
     });
     assert.deepEqual(differences(schema, values, base), ['irradiance.rotation_deg']);
     for (const name of readdirSync(new URL('presets/', config)))
-        assert.deepEqual(faults(schema, JSON.parse(readFileSync(new URL(`presets/${name}`, config))).request), [], name);
+        assert.deepEqual(
+            faults(schema, JSON.parse(readFileSync(new URL(`presets/${name}`, config))).request),
+            [],
+            name,
+        );
 });
 
 test('what the schema does not allow is named by field, with what is allowed', () => {
-    const wrong = (request) => faults(schema, request).map(({ path, words }) => `${path} ${words}`);
-    assert.deepEqual(wrong({ irradiance: { face_size: 3 } }), ['irradiance.face_size is 3; allowed is 4 to 256, whole']);
-    assert.deepEqual(wrong({ irradiance: { face_size: 4.5 } }), ['irradiance.face_size is 4.5; allowed is 4 to 256, whole']);
-    assert.deepEqual(wrong({ transmittance: { directions: null } }), ['transmittance.directions is empty; allowed is 1 to 4096, whole']);
+    const wrong = request => faults(schema, request).map(({ path, words }) => `${path} ${words}`);
+    assert.deepEqual(wrong({ irradiance: { face_size: 3 } }), [
+        'irradiance.face_size is 3; allowed is 4 to 256, whole',
+    ]);
+    assert.deepEqual(wrong({ irradiance: { face_size: 4.5 } }), [
+        'irradiance.face_size is 4.5; allowed is 4 to 256, whole',
+    ]);
+    assert.deepEqual(wrong({ transmittance: { directions: null } }), [
+        'transmittance.directions is empty; allowed is 1 to 4096, whole',
+    ]);
     assert.deepEqual(wrong({ strand: { width: 0 } }), ['strand.width is 0; allowed is more than 0, up to 1e18']);
     assert.deepEqual(wrong({ strand: { opacity: 'from_file', width: null } }), []);
     assert.deepEqual(wrong({ strand: { opacity: 2 } }), ['strand.opacity is 2; allowed is 0 to 1, or from_file']);
     assert.deepEqual(wrong({ irradiance: { tint: [1, 2, -1] } }), ['irradiance.tint.2 is -1; allowed is 0 to 1000000']);
     assert.deepEqual(wrong({ irradiance: { tint: [1] } }), ['irradiance.tint has 1 entries; allowed are 3 to 3']);
-    assert.deepEqual(wrong({ irradiance: { lights: [{ direction: [0, 1, 0] }] } }), ['irradiance.lights.0.irradiance is missing']);
+    assert.deepEqual(wrong({ irradiance: { lights: [{ direction: [0, 1, 0] }] } }), [
+        'irradiance.lights.0.irradiance is missing',
+    ]);
     assert.deepEqual(wrong({ outputs: ['npy', 'npy'] }), ['outputs holds something twice']);
     assert.deepEqual(wrong({ colour: 1, toString: 2 }), ['colour is not a field', 'toString is not a field']);
 });
 
 test('warnings tell of pixels that a bake refuses and of a low range', () => {
     const facts = { invalid_pixels: { negative: 3, nan: 1, infinite: 0 }, low_dynamic_range: true, warnings: ['x'] };
-    assert.deepEqual(warnings({ kind: 'environment', facts }), ['x', '1 pixel infinite or not a number.',
-        'A bake refuses such pixels unless its invalid radiance is "clamp".', 'Its dynamic range is low: lamps are clipped.']);
+    assert.deepEqual(warnings({ kind: 'environment', facts }), [
+        'x',
+        '1 pixel infinite or not a number.',
+        'A bake refuses such pixels unless its invalid radiance is "clamp".',
+        'Its dynamic range is low: lamps are clipped.',
+    ]);
+    assert.deepEqual(warnings({ kind: 'environment', facts: { small_lights: { pixels: 14, share: 0.583 } } }), [
+        'A sun or small lamps: 14 pixels hold 58 % of the light.',
+    ]);
     assert.deepEqual(warnings({ kind: 'model', facts: { warnings: ['no width'] } }), ['no width']);
 });
 
 test('numbers, sizes, times and names read well', () => {
-    assert.deepEqual([0, 999, 1500, 24100128, 999.6e6].map(bytes_words), ['0 bytes', '999 bytes', '1.5 kB', '24 MB', '1.0 GB']);
+    assert.deepEqual([0, 999, 1500, 24100128, 999.6e6].map(bytes_words), [
+        '0 bytes',
+        '999 bytes',
+        '1.5 kB',
+        '24 MB',
+        '1.0 GB',
+    ]);
     assert.deepEqual([0.1234, 5.04, 62, 600, 7200].map(seconds_words), ['123 ms', '5.0 s', '62 s', '10 min', '2.0 h']);
-    assert.deepEqual([0, 0.00001234, 3.14159, 123456, 1e9].map((x) => number_words(x)), ['0', '1.234e-5', '3.142', '123500', '1.000e+9']);
+    assert.deepEqual(
+        [0, 0.00001234, 3.14159, 123456, 1e9].map(x => number_words(x)),
+        ['0', '1.234e-5', '3.142', '123500', '1.000e+9'],
+    );
     assert.equal(name_from_file('../My <sky> (1k).hdr'), 'My-sky-1k');
     assert.equal(name_from_file('.hdr'), '');
 });

@@ -1,4 +1,5 @@
-// Lighthouse's judgement of performance and accessibility, through nginx.
+// Lighthouse's judgement of performance and accessibility, through nginx, with its settings for desktops: a page for
+// 1280x720 and tablets, and its settings for phones slow the processor of the machine that runs the test down fourfold.
 import assert from 'node:assert/strict';
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -10,7 +11,8 @@ import { Daemon, hairbake } from './daemon.mjs';
 import { free_port, start_nginx } from './nginx.mjs';
 
 const { chromium } = require_tool('playwright-core');
-const { default: lighthouse } = await import(pathToFileURL(require_tool.resolve('lighthouse')));
+const entry = require_tool.resolve('lighthouse');
+const { default: lighthouse, desktopConfig } = await import(pathToFileURL(entry));
 
 const least = 0.9;
 const tries = 3; // what else the machine does can only make a page slower: the best of three counts
@@ -25,10 +27,20 @@ before(async () => {
     const hair = await daemon.add('model', join(sample, 'groom.hair'));
     const environment = await daemon.add('environment', join(sample, 'sky.hdr'));
     await daemon.add('environment', join(sample, 'studio.hdr'));
-    bake = (await daemon.post('/v1/bakes', { hair: `sha256:${hair}`, environment: `sha256:${environment}`, outputs: ['raw'] })).id;
+    bake = (
+        await daemon.post('/v1/bakes', {
+            hair: `sha256:${hair}`,
+            environment: `sha256:${environment}`,
+            outputs: ['raw'],
+        })
+    ).id;
     await daemon.finished(bake);
     port = await free_port();
-    browser = await chromium.launch({ executablePath: chromium_path, headless: true, args: [...chromium_flags, `--remote-debugging-port=${port}`] });
+    browser = await chromium.launch({
+        executablePath: chromium_path,
+        headless: true,
+        args: [...chromium_flags, `--remote-debugging-port=${port}`],
+    });
 });
 
 after(async () => {
@@ -40,20 +52,26 @@ after(async () => {
 
 async function scores(url) {
     const settings = { port, logLevel: 'error', output: 'json', onlyCategories: ['performance', 'accessibility'] };
-    const { lhr } = await lighthouse(url, settings);
+    const { lhr } = await lighthouse(url, settings, desktopConfig);
     assert.equal(lhr.runtimeError, undefined);
-    const low = Object.values(lhr.audits).filter(({ score }) => score !== null && score < least).map(({ id, displayValue = '' }) => `${id} ${displayValue}`);
+    const low = Object.values(lhr.audits)
+        .filter(({ score }) => score !== null && score < least)
+        .map(({ id, displayValue = '' }) => `${id} ${displayValue}`);
     return { performance: lhr.categories.performance.score, accessibility: lhr.categories.accessibility.score, low };
 }
 
-for (const [name, hash] of [['environments', () => ''], ['bake form', () => '#/bake'], ['result', () => `#/bakes/${bake}`]])
+for (const [name, hash] of [
+    ['environments', () => ''],
+    ['bake form', () => '#/bake'],
+    ['result', () => `#/bakes/${bake}`],
+])
     test(`${name}: performance and accessibility are at least ${least}`, async () => {
         let best = { performance: 0, accessibility: 0 };
         for (let i = 0; i < tries && best.performance < least; ++i) {
             const found = await scores(`${nginx.address}/${hash()}`);
             if (found.performance >= best.performance) best = found;
         }
-        console.log(`${name}: performance ${best.performance}, accessibility ${best.accessibility}; below: ${best.low.join('; ')}`);
+        console.log(`${name}: performance ${best.performance}, accessibility ${best.accessibility}`);
         assert.ok(best.performance >= least, `performance ${best.performance}: ${best.low.join('; ')}`);
         assert.ok(best.accessibility >= least, `accessibility ${best.accessibility}: ${best.low.join('; ')}`);
     });

@@ -7,7 +7,7 @@ import { join } from 'node:path';
 import { patience_ms } from './daemon.mjs';
 
 export function free_port() {
-    return new Promise((found) => {
+    return new Promise(found => {
         const server = createServer().listen(0, '127.0.0.1', () => {
             const { port } = server.address();
             server.close(() => found(port));
@@ -49,16 +49,25 @@ export async function start_nginx(daemon_address) {
     mkdirSync(join(folder, 'body'));
     const port = await free_port();
     writeFileSync(join(folder, 'nginx.conf'), config(port, daemon_address));
-    const nginx = spawn('nginx', ['-p', folder, '-c', join(folder, 'nginx.conf')], { stdio: ['ignore', 'ignore', 'pipe'], env: { ...process.env, PATH: `${process.env.PATH}:/usr/sbin` } });
+    const nginx = spawn('nginx', ['-p', folder, '-c', join(folder, 'nginx.conf')], {
+        stdio: ['ignore', 'ignore', 'pipe'],
+        env: { ...process.env, PATH: `${process.env.PATH}:/usr/sbin` },
+    });
     let log = '';
-    nginx.stderr.on('data', (text) => (log += text));
+    nginx.stderr.on('data', text => (log += text));
     const address = `http://127.0.0.1:${port}`;
-    for (const end = Date.now() + patience_ms; ; await new Promise((done) => setTimeout(done, 50))) {
+    for (const end = Date.now() + patience_ms; ; await new Promise(done => setTimeout(done, 50))) {
         if (nginx.exitCode !== null || Date.now() > end) throw new Error(`nginx did not start: ${log}`);
-        if (await fetch(`${address}/healthz`).then((reply) => reply.ok, () => false)) break;
+        if (
+            await fetch(`${address}/healthz`).then(
+                reply => reply.ok,
+                () => false,
+            )
+        )
+            break;
     }
     const stop = async () => {
-        const ended = new Promise((done) => nginx.once('exit', done));
+        const ended = new Promise(done => nginx.once('exit', done));
         nginx.kill('SIGTERM');
         await ended;
         rmSync(folder, { recursive: true, force: true });

@@ -1,14 +1,11 @@
 // What the tests of the viewer share: the staged files behind a small server on a free port, and pages of a browser.
-import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { tmpdir } from 'node:os';
 import { extname, join } from 'node:path';
-import { fileURLToPath } from 'node:url';
+import { stage_page } from './daemon.mjs';
 
 export { launch as open_browser } from './browser.mjs';
-
-const web = fileURLToPath(new URL('../../../clients/web', import.meta.url));
 
 const types = {
     '.html': 'text/html; charset=utf-8',
@@ -24,7 +21,7 @@ const policy =
 export function stage() {
     const parent = mkdtempSync(join(tmpdir(), 'hairbake-web-'));
     const folder = join(parent, 'site');
-    execFileSync(process.execPath, [join(web, 'stage.mjs'), folder]);
+    stage_page(folder);
     return { folder, remove: () => rmSync(parent, { recursive: true, force: true }) };
 }
 

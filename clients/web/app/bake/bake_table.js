@@ -2,8 +2,8 @@
 import { html } from '../../vendor/preact.js';
 import { use_watch } from '../hooks.js';
 import { label_of } from '../input_facts.js';
-import { State } from '../parts.js';
-import { seconds_words, time_words } from '../words.js';
+import { Heads, State } from '../parts.js';
+import { seconds_words, short_digest, time_words } from '../words.js';
 import { CancelButton, has_ended, watch_ms } from './live_bake.js';
 
 /** Of a running bake: how far it is. */
@@ -28,21 +28,26 @@ export const bake_words = (bake, models, environments) =>
 /** chosen: a Set of ids and on_choose(id, whether), or neither; only bakes of a hair model can be chosen. */
 export function BakeTable({ bakes, models, environments, chosen, on_choose, on_change }) {
     return html`<div class="scroll" tabindex="0" role="region" aria-label="Bakes"><table class="striped">
-        <thead><tr>
-            ${chosen && html`<th scope="col"><span class="visually-hidden">Chosen</span></th>`}
-            <th scope="col">State</th><th scope="col">Model</th><th scope="col">Environment</th><th scope="col">Asked for</th><th scope="col">Actions</th>
-        </tr></thead>
-        <tbody>${bakes.map((bake) => {
+        <${Heads} titles=${['Chosen', 'State', 'Model', 'Environment', 'Asked for', 'Bake'].slice(chosen ? 0 : 1)} />
+        <tbody>${bakes.map(bake => {
             const words = bake_words(bake, models, environments);
+            const short = short_digest(bake.id); // what tells bakes of one model and environment apart
             return html`<tr key=${bake.id} data-id=${bake.id}>
-                ${chosen && html`<td>${bake.model && html`<input type="checkbox" checked=${chosen.has(bake.id)} aria-label=${`Choose ${words}`}
-                    onChange=${(event) => on_choose(bake.id, event.target.checked)} />`}</td>`}
+                ${
+                    chosen &&
+                    html`<td>${
+                        bake.model &&
+                        html`<input type="checkbox" checked=${chosen.has(bake.id)} aria-label=${`Choose ${words}`}
+                    onChange=${event => on_choose(bake.id, event.target.checked)} />`
+                    }</td>`
+                }
                 <td><${State} state=${bake.state} />${bake.state === 'running' && html`<${Running} bake=${bake} />`}
                     ${bake.error && html`<small class="problem">${bake.error.message}</small>`}</td>
                 <td>${input_words(bake, 'hair', models)}</td>
                 <td>${input_words(bake, 'environment', environments)}</td>
                 <td>${time_words(bake.created)}</td>
-                <td><div class="actions"><a href=${`#/bakes/${bake.id}`} aria-label=${`Open ${words}`}>Open</a>
+                <td><div class="actions">
+                    <a href=${`#/bakes/${bake.id}`} aria-label=${`${short}, ${words}`}>${short}</a>
                     <${CancelButton} bake=${bake} label=${words} on_change=${on_change} /></div></td>
             </tr>`;
         })}</tbody>

@@ -3,15 +3,16 @@ import { html } from '../../vendor/preact.js';
 import { title_words } from '../words.js';
 import { number_part, range_words, takes_null, word_of } from './schema.js';
 
-const to_number = (text) => (text.trim() === '' ? null : Number(text));
-const shown = (value) => (typeof value === 'number' ? String(value) : '');
+const to_number = text => (text.trim() === '' ? null : Number(text));
+const shown = value => (typeof value === 'number' ? String(value) : '');
 
 function NumberInput({ id, schema, value, on_change, label, described, invalid }) {
     const part = number_part(schema);
-    return html`<input id=${id} type="number" step=${part.type === 'integer' ? 1 : 'any'} min=${part.minimum} max=${part.maximum}
+    return html`<input id=${id} type="number" step=${part.type === 'integer' ? 1 : 'any'} min=${part.minimum}
+        max=${part.maximum}
         value=${shown(value)} aria-label=${label} aria-describedby=${described} aria-invalid=${invalid ? 'true' : null}
         placeholder=${takes_null(schema) ? 'as the file says' : null}
-        onInput=${(event) => on_change(to_number(event.target.value))} />`;
+        onInput=${event => on_change(to_number(event.target.value))} />`;
 }
 
 /** A number, or the word that the schema allows in its place. */
@@ -19,17 +20,21 @@ function NumberOrWord({ id, schema, value, on_change, described, invalid }) {
     const word = word_of(schema);
     const part = number_part(schema);
     const is_word = value === word;
+    const first = part.maximum > 1 ? 8 : 1; // what stands there when the word is taken away
     return html`<div class="row">
-        <${NumberInput} id=${id} schema=${schema} value=${is_word ? null : value} on_change=${on_change} described=${described} invalid=${invalid} />
+        <${NumberInput} id=${id} schema=${schema} value=${is_word ? null : value} on_change=${on_change}
+            described=${described} invalid=${invalid} />
         <label><input type="checkbox" checked=${is_word}
-            onChange=${(event) => on_change(event.target.checked ? word : (part.maximum > 1 ? 8 : 1))} /> ${title_words(word)}</label>
+            onChange=${event => on_change(event.target.checked ? word : first)} /> ${title_words(word)}</label>
     </div>`;
 }
 
 function Triple({ schema, value, on_change, described, invalid, title, parts = ['X', 'Y', 'Z'] }) {
-    return html`<div class="row">${parts.map((part, i) => html`<${NumberInput} key=${part} schema=${schema.items} value=${value?.[i]}
+    return html`<div class="row">${parts.map(
+        (part, i) => html`<${NumberInput} key=${part} schema=${schema.items} value=${value?.[i]}
         label=${`${title}, ${part}`} described=${described} invalid=${invalid}
-        on_change=${(number) => on_change(value.map((old, j) => (j === i ? number : old)))} />`)}</div>`;
+        on_change=${number => on_change(value.map((old, j) => (j === i ? number : old)))} />`,
+    )}</div>`;
 }
 
 const output_help = {
@@ -44,24 +49,35 @@ const output_help = {
 };
 
 function Choices({ schema, value, on_change }) {
-    return html`<div class="fields">${schema.items.enum.map((one) => html`<label key=${one}>
-        <input type="checkbox" checked=${value.includes(one)} onChange=${(event) =>
-            on_change(schema.items.enum.filter((other) => (other === one ? event.target.checked : value.includes(other))))} />
-        ${' '}${one}${output_help[one] ? `: ${output_help[one]}` : ''}</label>`)}</div>`;
+    return html`<div class="fields">${schema.items.enum.map(
+        one => html`<label key=${one}>
+        <input type="checkbox" checked=${value.includes(one)} onChange=${event =>
+            on_change(
+                schema.items.enum.filter(other => (other === one ? event.target.checked : value.includes(other))),
+            )} />
+        ${' '}${one}${output_help[one] ? `: ${output_help[one]}` : ''}</label>`,
+    )}</div>`;
 }
 
 function Lights({ schema, value, on_change }) {
-    const change = (i, name, part) => on_change(value.map((light, j) => (j === i ? { ...light, [name]: part } : light)));
+    const change = (i, name, part) =>
+        on_change(value.map((light, j) => (j === i ? { ...light, [name]: part } : light)));
     const fresh = { direction: [0, 1, 0], irradiance: [1, 1, 1] };
     return html`<div>
-        ${value.map((light, i) => html`<div class="light" key=${i} role="group" aria-label=${`Light ${i + 1}`}>
-            <div>Direction <${Triple} schema=${schema.items.properties.direction} value=${light.direction} title=${`Light ${i + 1}, direction`}
-                on_change=${(part) => change(i, 'direction', part)} /></div>
-            <div>Irradiance <${Triple} schema=${schema.items.properties.irradiance} value=${light.irradiance} title=${`Light ${i + 1}, irradiance`}
-                parts=${['R', 'G', 'B']} on_change=${(part) => change(i, 'irradiance', part)} /></div>
-            <button type="button" class="small secondary outline" onClick=${() => on_change(value.filter((_, j) => j !== i))}>Remove light ${i + 1}</button>
-        </div>`)}
-        <button type="button" class="small outline" disabled=${value.length >= schema.maxItems} onClick=${() => on_change([...value, fresh])}>Add a light</button>
+        ${value.map(
+            (light, i) => html`<div class="light" key=${i} role="group" aria-label=${`Light ${i + 1}`}>
+            <div>Direction <${Triple} schema=${schema.items.properties.direction} value=${light.direction}
+                title=${`Light ${i + 1}, direction`}
+                on_change=${part => change(i, 'direction', part)} /></div>
+            <div>Irradiance <${Triple} schema=${schema.items.properties.irradiance} value=${light.irradiance}
+                title=${`Light ${i + 1}, irradiance`}
+                parts=${['R', 'G', 'B']} on_change=${part => change(i, 'irradiance', part)} /></div>
+            <button type="button" class="small secondary outline"
+                onClick=${() => on_change(value.filter((_, j) => j !== i))}>Remove light ${i + 1}</button>
+        </div>`,
+        )}
+        <button type="button" class="small outline" disabled=${value.length >= schema.maxItems}
+            onClick=${() => on_change([...value, fresh])}>Add a light</button>
     </div>`;
 }
 
@@ -77,8 +93,8 @@ function control_of(path, schema) {
 }
 
 function Select({ id, schema, value, on_change, described }) {
-    return html`<select id=${id} aria-describedby=${described} onChange=${(event) => on_change(event.target.value)}>
-        ${schema.enum.map((one) => html`<option key=${one} value=${one} selected=${one === value}>${one}</option>`)}
+    return html`<select id=${id} aria-describedby=${described} onChange=${event => on_change(event.target.value)}>
+        ${schema.enum.map(one => html`<option key=${one} value=${one} selected=${one === value}>${one}</option>`)}
     </select>`;
 }
 
@@ -103,8 +119,9 @@ export function Field({ path, schema, value, on_change, fault, changed }) {
     const mark = `field ${changed ? 'changed' : ''}`;
     const help = html`<${Help} id=${`${id}-help`} schema=${schema} fault=${fault} />`;
     if (schema.type === 'boolean')
-        return html`<div class=${mark}><label><input id=${id} type="checkbox" role="switch" checked=${value} aria-describedby=${`${id}-help`}
-            onChange=${(event) => on_change(event.target.checked)} /> ${title}</label>${help}</div>`;
+        return html`<div class=${mark}><label><input id=${id} type="checkbox" role="switch" checked=${value}
+            aria-describedby=${`${id}-help`}
+            onChange=${event => on_change(event.target.checked)} /> ${title}</label>${help}</div>`;
     const [Control, group] = control_of(path, schema);
     const parts = path.at(-1) === 'tint' ? ['R', 'G', 'B'] : undefined;
     if (group)

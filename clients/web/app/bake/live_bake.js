@@ -37,7 +37,8 @@ export function CancelButton({ bake, label, on_change }) {
             set_problem(failure);
         }
     };
-    return html`<button class="small secondary outline" onClick=${cancel} aria-label=${`Cancel ${label}`}>Cancel</button>
+    return html`<button class="small secondary outline" onClick=${cancel}
+        aria-label=${`Cancel ${label}`}>Cancel</button>
         <${ProblemNote} problem=${problem} />`;
 }
 
@@ -57,18 +58,23 @@ export function use_bake(id) {
     useEffect(() => {
         if (bake) announce(`The bake is ${bake.state}.`);
     }, [bake?.state]);
-    return { bake, problem, again: () => set_round((n) => n + 1) };
+    return { bake, problem, again: () => set_round(n => n + 1) };
 }
 
 export function Progress({ bake, again }) {
     const left = bake.seconds_left ? `about ${seconds_words(bake.seconds_left)} left` : '';
     return html`<section aria-label="Progress">
-        <p><${State} state=${bake.state} /> ${!has_ended(bake) && html`<span>${Math.round(100 * bake.fraction)} % ${left}</span>`}</p>
-        ${!has_ended(bake) && bake.stages.map((stage) => html`<${Stage} key=${stage.key} stage=${stage} />`)}
+        <p><${State} state=${bake.state} /> ${!has_ended(bake) && html`<span>
+            ${Math.round(100 * bake.fraction)} % ${left}</span>`}</p>
+        ${!has_ended(bake) && bake.stages.map(stage => html`<${Stage} key=${stage.key} stage=${stage} />`)}
         ${bake.state === 'queued' && html`<p>It waits for a free worker.</p>`}
         <${CancelButton} bake=${bake} label="this bake" on_change=${again} />
-        ${bake.state === 'failed' && html`<div role="alert" class="problem"><h2>Why it failed</h2>
-            <p>${bake.error?.message ?? 'The service gives no reason.'}</p></div>`}
-        ${(bake.state === 'failed' || bake.state === 'cancelled') && html`<${AgainButton} bake=${bake} on_change=${again} />`}
+        ${
+            bake.state === 'failed' &&
+            html`<div role="alert" class="problem"><h2>Why it failed</h2>
+            <p>${bake.error?.message ?? 'The service gives no reason.'}</p></div>`
+        }
+        ${(bake.state === 'failed' || bake.state === 'cancelled') && html`<${AgainButton} bake=${bake}
+            on_change=${again} />`}
     </section>`;
 }

@@ -5,7 +5,13 @@ import { ProblemNote } from '../parts.js';
 import { count_words } from '../words.js';
 
 const stage_line = ({ transmittance, irradiance }) =>
-    `${count_words(transmittance, 'transmittance')}, ${count_words(irradiance, 'set of irradiance maps', 'sets of irradiance maps')}`;
+    [
+        count_words(transmittance, 'transmittance'),
+        count_words(irradiance, 'set of irradiance maps', 'sets of irradiance maps'),
+    ].join(', ');
+
+const forecast_words = ({ bakes, reused_stages, computed_stages }) =>
+    `${count_words(bakes, 'bake')}: reused are ${stage_line(reused_stages)}; computed ${stage_line(computed_stages)}.`;
 
 function Forecast({ forecast }) {
     return html`<dl class="facts" id="forecast">
@@ -25,12 +31,12 @@ export function Rebake({ request, label = 'Re-bake' }) {
         if (!body) return undefined;
         let live = true;
         api.post('/v1/rebakes', request, '?dry_run=1').then(
-            (forecast) => {
+            forecast => {
                 if (!live) return;
                 set_state({ forecast });
-                announce(`${count_words(forecast.bakes, 'bake')}: reused are ${stage_line(forecast.reused_stages)}; computed are ${stage_line(forecast.computed_stages)}.`);
+                announce(forecast_words(forecast));
             },
-            (problem) => live && set_state({ problem }),
+            problem => live && set_state({ problem }),
         );
         return () => (live = false);
     }, [body]);
@@ -46,6 +52,7 @@ export function Rebake({ request, label = 'Re-bake' }) {
     return html`<section aria-label="What it takes">
         <${ProblemNote} problem=${state.problem} />
         ${!state.forecast && !state.problem && html`<p aria-busy="true">Counting what is reused</p>`}
-        ${state.forecast && html`<${Forecast} forecast=${state.forecast} /><button onClick=${confirm}>${label} ${count_words(state.forecast.bakes, 'bake')}</button>`}
+        ${state.forecast && html`<${Forecast} forecast=${state.forecast} /><button onClick=${confirm}>
+            ${label} ${count_words(state.forecast.bakes, 'bake')}</button>`}
     </section>`;
 }

@@ -10,7 +10,7 @@ export function with_value(values, path, value) {
     return { ...values, [name]: with_value(values?.[name] ?? {}, rest, value) };
 }
 
-const is_block = (value) => typeof value === 'object' && value !== null && !Array.isArray(value);
+const is_block = value => typeof value === 'object' && value !== null && !Array.isArray(value);
 
 /** `values` with the fields that `request` gives. */
 export function merged(values, request) {
@@ -36,7 +36,8 @@ export function build_request(schema, values) {
     for (const { path } of fields_of(schema)) {
         const value = value_at(values, path);
         const always = path[0] === 'outputs';
-        if (always || JSON.stringify(value) !== JSON.stringify(value_at(defaults, path))) request = with_value(request, path, value);
+        if (always || JSON.stringify(value) !== JSON.stringify(value_at(defaults, path)))
+            request = with_value(request, path, value);
     }
     return request;
 }
@@ -45,6 +46,6 @@ export function build_request(schema, values) {
 export function differences(schema, a, b) {
     return fields_of(schema)
         .map(({ path }) => path)
-        .filter((path) => JSON.stringify(value_at(a, path)) !== JSON.stringify(value_at(b, path)))
-        .map((path) => path.join('.'));
+        .filter(path => JSON.stringify(value_at(a, path)) !== JSON.stringify(value_at(b, path)))
+        .map(path => path.join('.'));
 }

@@ -12,32 +12,40 @@ export function fields_of(schema, path = []) {
 /** Every field's default, as a request. */
 export function defaults_of(schema) {
     return Object.fromEntries(
-        Object.entries(schema.properties).map(([name, part]) => [name, part.properties ? defaults_of(part) : structuredClone(part.default ?? null)]),
+        Object.entries(schema.properties).map(([name, part]) => [
+            name,
+            part.properties ? defaults_of(part) : structuredClone(part.default ?? null),
+        ]),
     );
 }
 
-const types_of = (schema) => [schema.type ?? []].flat();
+const types_of = schema => [schema.type ?? []].flat();
 
 /** The alternative of a schema that takes numbers, or null. */
 export function number_part(schema) {
-    if (types_of(schema).some((type) => type === 'number' || type === 'integer')) return schema;
-    return (schema.anyOf ?? []).find((part) => number_part(part)) ?? null;
+    if (types_of(schema).some(type => type === 'number' || type === 'integer')) return schema;
+    return (schema.anyOf ?? []).find(part => number_part(part)) ?? null;
 }
 
-export const takes_null = (schema) => types_of(schema).includes('null');
+export const takes_null = schema => types_of(schema).includes('null');
 /** The word that may stand in a number's place ("auto"), or undefined. */
-export const word_of = (schema) => (schema.anyOf ?? []).find((part) => 'const' in part)?.const;
+export const word_of = schema => (schema.anyOf ?? []).find(part => 'const' in part)?.const;
 
 /** "16 to 4096", "more than 0, up to 1", "one of a, b". */
 export function range_words(schema) {
     if (schema.enum) return `one of ${schema.enum.join(', ')}`;
     const part = number_part(schema);
     if (part) {
-        const low = part.exclusiveMinimum !== undefined ? `more than ${range_number(part.exclusiveMinimum)}, up to` : `${range_number(part.minimum)} to`;
+        const low =
+            part.exclusiveMinimum !== undefined
+                ? `more than ${range_number(part.exclusiveMinimum)}, up to`
+                : `${range_number(part.minimum)} to`;
         const word = word_of(schema);
-        return `${low} ${range_number(part.maximum)}${part.type === 'integer' ? ', whole' : ''}${word ? `, or ${word}` : ''}`;
+        const whole = part.type === 'integer' ? ', whole' : '';
+        return `${low} ${range_number(part.maximum)}${whole}${word ? `, or ${word}` : ''}`;
     }
-    if (schema.type === 'array' && number_part(schema.items ?? {})) return `${schema.minItems} numbers, each ${range_words(schema.items)}`;
+    if (schema.type === 'array' && number_part(schema.items ?? {}))
+        return `${schema.minItems} numbers, each ${range_words(schema.items)}`;
     return '';
 }
 
@@ -60,7 +68,10 @@ const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 
 function number_fits(schema, value) {
     return (
-        !(value < schema.minimum) && !(value > schema.maximum) && !(value <= schema.exclusiveMinimum) && !(value >= schema.exclusiveMaximum)
+        !(value < schema.minimum) &&
+        !(value > schema.maximum) &&
+        !(value <= schema.exclusiveMinimum) &&
+        !(value >= schema.exclusiveMaximum)
     );
 }
 
@@ -70,15 +81,18 @@ function in_words(value) {
 
 /** What does not follow the schema: [{ path: 'irradiance.face_size', words }]. */
 export function faults(schema, value, path = '') {
-    const wrong = (words) => [{ path, words }];
+    const wrong = words => [{ path, words }];
     const types = types_of(schema);
-    if (types.length && !types.some((type) => type_fits(type, value)))
+    if (types.length && !types.some(type => type_fits(type, value)))
         return wrong(`is ${in_words(value)}; allowed is ${range_words(schema) || types.join(' or ')}`);
-    if (schema.enum && !schema.enum.some((one) => same(one, value))) return wrong(`is ${in_words(value)}; allowed is ${range_words(schema)}`);
-    if ('const' in schema && !same(schema.const, value)) return wrong(`is ${in_words(value)}; allowed is ${schema.const}`);
-    if (schema.anyOf && !schema.anyOf.some((part) => faults(part, value).length === 0))
+    if (schema.enum && !schema.enum.some(one => same(one, value)))
         return wrong(`is ${in_words(value)}; allowed is ${range_words(schema)}`);
-    if (typeof value === 'number' && !number_fits(schema, value)) return wrong(`is ${value}; allowed is ${range_words(schema)}`);
+    if ('const' in schema && !same(schema.const, value))
+        return wrong(`is ${in_words(value)}; allowed is ${schema.const}`);
+    if (schema.anyOf && !schema.anyOf.some(part => faults(part, value).length === 0))
+        return wrong(`is ${in_words(value)}; allowed is ${range_words(schema)}`);
+    if (typeof value === 'number' && !number_fits(schema, value))
+        return wrong(`is ${value}; allowed is ${range_words(schema)}`);
     if (typeof value === 'string' && value.length < (schema.minLength ?? 0)) return wrong('is empty');
     if (Array.isArray(value)) return array_faults(schema, value, path);
     if (schema.properties && value !== null && typeof value === 'object') return object_faults(schema, value, path);
@@ -87,14 +101,18 @@ export function faults(schema, value, path = '') {
 
 function array_faults(schema, value, path) {
     const { minItems = 0, maxItems = Infinity } = schema;
-    if (value.length < minItems || value.length > maxItems) return [{ path, words: `has ${value.length} entries; allowed are ${minItems} to ${maxItems}` }];
-    if (schema.uniqueItems && new Set(value.map((item) => JSON.stringify(item))).size < value.length) return [{ path, words: 'holds something twice' }];
+    if (value.length < minItems || value.length > maxItems)
+        return [{ path, words: `has ${value.length} entries; allowed are ${minItems} to ${maxItems}` }];
+    if (schema.uniqueItems && new Set(value.map(item => JSON.stringify(item))).size < value.length)
+        return [{ path, words: 'holds something twice' }];
     return schema.items ? value.flatMap((item, i) => faults(schema.items, item, `${path}.${i}`)) : [];
 }
 
 function object_faults(schema, value, path) {
-    const of = (name) => (path ? `${path}.${name}` : name);
-    const missing = (schema.required ?? []).filter((name) => !(name in value)).map((name) => ({ path: of(name), words: 'is missing' }));
+    const of = name => (path ? `${path}.${name}` : name);
+    const missing = (schema.required ?? [])
+        .filter(name => !(name in value))
+        .map(name => ({ path: of(name), words: 'is missing' }));
     const own = Object.entries(value).flatMap(([name, part]) => {
         if (Object.hasOwn(schema.properties, name)) return faults(schema.properties[name], part, of(name));
         return schema.additionalProperties === false ? [{ path: of(name), words: 'is not a field' }] : [];

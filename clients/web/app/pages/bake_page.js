@@ -11,20 +11,26 @@ import { Loading, ProblemNote } from '../parts.js';
 import { count_words, title_words } from '../words.js';
 
 const stages = ['strand', 'transmittance', 'irradiance'];
-const digest_of = (value) => value?.replace(/^sha256:/, '') ?? '';
-const named = (digest) => (digest ? `sha256:${digest}` : null);
+const digest_of = value => value?.replace(/^sha256:/, '') ?? '';
+const named = digest => (digest ? `sha256:${digest}` : null);
 
 function Stage({ name, schema, values, base, wrong, on_change }) {
     const part = { properties: { [name]: schema.properties[name] } };
     const changed = differences(part, values, base);
-    const bad = Object.keys(wrong).filter((path) => path.startsWith(name));
-    const note = [changed.length && `${changed.length} changed`, bad.length && `${bad.length} to correct`].filter(Boolean).join(', ');
-    return html`<details class="stage" open=${bad.length > 0 || null}><summary>${title_words(name)}${note && `: ${note}`}</summary>
+    const bad = Object.keys(wrong).filter(path => path.startsWith(name));
+    const note = [changed.length && `${changed.length} changed`, bad.length && `${bad.length} to correct`]
+        .filter(Boolean)
+        .join(', ');
+    return html`<details class="stage" open=${bad.length > 0 || null}><summary>
+        ${title_words(name)}${note && `: ${note}`}</summary>
         <p>${schema.properties[name].description}</p>
         <div class="fields">
-            ${fields_of(part).map(({ path, schema: field }) => html`<${Field} key=${path.join('.')} path=${path} schema=${field}
-                value=${value_at(values, path)} fault=${fault_of(wrong, path)} changed=${changed.includes(path.join('.'))}
-                on_change=${(value) => on_change(path, value)} />`)}
+            ${fields_of(part).map(
+                ({ path, schema: field }) => html`<${Field} key=${path.join('.')} path=${path} schema=${field}
+                value=${value_at(values, path)} fault=${fault_of(wrong, path)}
+                changed=${changed.includes(path.join('.'))}
+                on_change=${value => on_change(path, value)} />`,
+            )}
         </div>
     </details>`;
 }
@@ -32,18 +38,20 @@ function Stage({ name, schema, values, base, wrong, on_change }) {
 // Also that of a part of it: "irradiance.tint.2".
 function fault_of(wrong, path) {
     const own = path.join('.');
-    const found = Object.keys(wrong).find((other) => other === own || other.startsWith(`${own}.`));
+    const found = Object.keys(wrong).find(other => other === own || other.startsWith(`${own}.`));
     return found && wrong[found];
 }
 
 function Presets({ presets, value, on_change }) {
     const chosen = presets.find(({ name }) => name === value);
     return html`<div class="field"><label for="preset">Preset</label>
-        <select id="preset" aria-describedby="preset-help" onChange=${(event) => on_change(event.target.value)}>
+        <select id="preset" aria-describedby="preset-help" onChange=${event => on_change(event.target.value)}>
             <option value="">default</option>
-            ${presets.map(({ name }) => html`<option key=${name} value=${name} selected=${name === value}>${name}</option>`)}
+            ${presets.map(({ name }) => html`<option key=${name} value=${name} selected=${name === value}>${name}
+                </option>`)}
         </select>
-        <small id="preset-help">${chosen?.description ?? 'Every field as the service sets it when a request leaves it out.'}</small>
+        <small id="preset-help">
+            ${chosen?.description ?? 'Every field as the service sets it when a request leaves it out.'}</small>
     </div>`;
 }
 
@@ -60,27 +68,31 @@ function Form({ schema, presets, query }) {
     const form = useRef(null);
 
     const request = build_request(schema, values);
-    const wrong = Object.fromEntries(faults(schema, request).map(({ path, words }) => [path, `${title_words(path)} ${words}.`]));
+    const wrong = Object.fromEntries(
+        faults(schema, request).map(({ path, words }) => [path, `${title_words(path)} ${words}.`]),
+    );
     if (!values.hair && !values.environment) wrong.hair = 'A hair model, an environment, or one of each is needed.';
     if (problem?.field) wrong[problem.field.replaceAll(/\[(\d+)\]/g, '.$1')] = problem.message;
     const change = (path, value) => {
         set_problem(null);
-        set_values((old) => with_value(old, path, value));
+        set_values(old => with_value(old, path, value));
     };
-    const take_preset = (name) => {
-        const settings = merged(start, presets.find((one) => one.name === name)?.request ?? {});
+    const take_preset = name => {
+        const settings = merged(start, presets.find(one => one.name === name)?.request ?? {});
         const { hair, environment, occluder, receiver, outputs } = values;
         set_preset(name);
         set_base(settings);
         set_values({ ...settings, hair, environment, occluder, receiver, outputs });
     };
-    const submit = async (event) => {
+    const submit = async event => {
         event.preventDefault();
         set_asked(true);
         const count = Object.keys(wrong).length;
         if (count) {
             announce(`${count_words(count, 'field')} to correct.`);
-            setTimeout(() => form.current.querySelector('[aria-invalid=true], .problem')?.scrollIntoView({ block: 'center' }));
+            setTimeout(() =>
+                form.current.querySelector('[aria-invalid=true], .problem')?.scrollIntoView({ block: 'center' }),
+            );
             return;
         }
         try {
@@ -92,24 +104,34 @@ function Form({ schema, presets, query }) {
     };
     const visible = asked ? wrong : Object.fromEntries(Object.entries(wrong).filter(([path]) => path !== 'hair'));
     return html`<form onSubmit=${submit} ref=${form} novalidate>
-        <${Picker} kind="model" title="Hair model" inputs=${models} value=${digest_of(values.hair)} none="None: maps alone"
-            on_change=${(id) => change(['hair'], named(id))} />
-        <${Picker} kind="environment" title="Environment" inputs=${environments} value=${digest_of(values.environment)} none="None: transmittance alone"
-            on_change=${(id) => change(['environment'], named(id))} />
+        <${Picker} kind="model" title="Hair model" inputs=${models} value=${digest_of(values.hair)}
+            none="None: maps alone"
+            on_change=${id => change(['hair'], named(id))} />
+        <${Picker} kind="environment" title="Environment" inputs=${environments}
+            value=${digest_of(values.environment)} none="None: transmittance alone"
+            on_change=${id => change(['environment'], named(id))} />
         ${visible.hair && html`<p class="problem" role="alert">${visible.hair}</p>`}
         <${Presets} presets=${presets} value=${preset} on_change=${take_preset} />
-        ${stages.map((name) => html`<${Stage} key=${name} name=${name} schema=${schema} values=${values} base=${base} wrong=${visible} on_change=${change} />`)}
+        ${stages.map(name => html`<${Stage} key=${name} name=${name} schema=${schema} values=${values} base=${base}
+            wrong=${visible} on_change=${change} />`)}
         <details class="stage"><summary>Meshes and priority</summary><div class="fields">
-            ${['occluder', 'receiver'].map((name) => html`<${MeshField} key=${name} name=${name} schema=${schema.properties[name]} value=${values[name]}
-                fault=${visible[name]} on_change=${(value) => change([name], value)} />`)}
-            <${Field} path=${['priority']} schema=${schema.properties.priority} value=${values.priority} fault=${visible.priority}
-                on_change=${(value) => change(['priority'], value)} />
+            ${['occluder', 'receiver'].map(
+                name => html`<${MeshField} key=${name} name=${name} schema=${schema.properties[name]}
+                    value=${values[name]}
+                fault=${visible[name]} on_change=${value => change([name], value)} />`,
+            )}
+            <${Field} path=${['priority']} schema=${schema.properties.priority} value=${values.priority}
+                fault=${visible.priority}
+                on_change=${value => change(['priority'], value)} />
         </div></details>
-        <${Field} path=${['outputs']} schema=${schema.properties.outputs} value=${values.outputs} fault=${visible.outputs}
-            on_change=${(value) => change(['outputs'], value)} />
-        ${!values.outputs.includes('raw') && html`<p class="help">Without raw, this page has no maps, histogram or viewer for the bake.</p>`}
+        <${Field} path=${['outputs']} schema=${schema.properties.outputs} value=${values.outputs}
+            fault=${visible.outputs}
+            on_change=${value => change(['outputs'], value)} />
+        ${!values.outputs.includes('raw') && html`<p
+            class="help">Without raw, this page has no maps, histogram or viewer for the bake.</p>`}
         <${ProblemNote} problem=${problem} />
-        <details><summary>The request as JSON</summary><pre tabindex="0">${JSON.stringify(request, null, 2)}</pre></details>
+        <details><summary>The request as JSON</summary><pre tabindex="0">${JSON.stringify(request, null, 2)}</pre>
+            </details>
         <button type="submit">Bake</button>
     </form>`;
 }
@@ -119,8 +141,8 @@ export default function BakePage({ query }) {
     const [state, set_state] = useState({});
     useEffect(() => {
         api.contract().then(
-            (contract) => set_state({ contract }),
-            (problem) => set_state({ problem }),
+            contract => set_state({ contract }),
+            problem => set_state({ problem }),
         );
     }, []);
     if (state.problem) return html`<${ProblemNote} problem=${state.problem} />`;

@@ -16,7 +16,12 @@ export default function BakesPage() {
     const [limit, set_limit] = useState(page_size);
     const [chosen, set_chosen] = useState(new Set());
     const [round, set_round] = useState(0);
-    const { value, problem } = use_watch(`/v1/bakes?limit=${limit}${state && `&state=${state}`}`, 1500, () => false, round);
+    const { value, problem } = use_watch(
+        `/v1/bakes?limit=${limit}${state && `&state=${state}`}`,
+        1500,
+        () => false,
+        round,
+    );
     const choose = (id, whether) => {
         const next = new Set(chosen);
         if (whether) next.add(id);
@@ -25,17 +30,23 @@ export default function BakesPage() {
     };
     return html`<div>
         <div class="toolbar">
-            <label>State <select onChange=${(event) => set_state(event.target.value)}>
-                <option value="">all</option>${states.map((one) => html`<option key=${one}>${one}</option>`)}
+            <label>State <select onChange=${event => set_state(event.target.value)}>
+                <option value="">all</option>${states.map(one => html`<option key=${one}>${one}</option>`)}
             </select></label>
             <a role="button" class="small" href="#/bake">New bake</a>
-            ${chosen.size > 0 && html`<a role="button" class="small" href=${`#/rebake?bakes=${[...chosen].join(',')}`}>Re-bake ${count_words(chosen.size, 'bake')}</a>`}
+            ${chosen.size > 0 && html`<a role="button" class="small"
+                href=${`#/rebake?bakes=${[...chosen].join(',')}`}>Re-bake ${count_words(chosen.size, 'bake')}</a>`}
         </div>
         <${ProblemNote} problem=${problem} />
         ${!value && !problem && html`<${Loading} what="the bakes" />`}
         ${value?.bakes.length === 0 && html`<p>There is none${state && ` that is ${state}`}.</p>`}
-        ${value?.bakes.length > 0 && html`<${BakeTable} bakes=${value.bakes} models=${models} environments=${environments} chosen=${chosen} on_choose=${choose}
-            on_change=${() => set_round((n) => n + 1)} />`}
-        ${value?.next && limit < 1000 && html`<button class="small outline" onClick=${() => set_limit(Math.min(1000, limit + 150))}>Show more</button>`}
+        ${
+            value?.bakes.length > 0 &&
+            html`<${BakeTable} bakes=${value.bakes} models=${models} environments=${environments} chosen=${chosen}
+                on_choose=${choose}
+            on_change=${() => set_round(n => n + 1)} />`
+        }
+        ${value?.next && limit < 1000 && html`<button class="small outline"
+            onClick=${() => set_limit(Math.min(1000, limit + 150))}>Show more</button>`}
     </div>`;
 }

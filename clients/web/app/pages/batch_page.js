@@ -6,7 +6,7 @@ import { use_app, use_watch } from '../hooks.js';
 import { Facts, Loading, ProblemNote } from '../parts.js';
 
 const open = ({ states }) => states.queued + states.running;
-const has_ended = (batch) => open(batch) === 0;
+const has_ended = batch => open(batch) === 0;
 
 export default function BatchPage({ path }) {
     const { announce } = use_app();
@@ -16,8 +16,11 @@ export default function BatchPage({ path }) {
     const { value: batch, problem } = use_watch(address, 700, has_ended);
     const left = batch ? open(batch) : -1;
     // The list is asked for until nothing is open, so that its last state is the last one.
-    const { value: list } = use_watch(`/v1/bakes?batch=${encodeURIComponent(path[1] ?? '')}&limit=1000`, 1000, ({ bakes }) =>
-        bakes.every(({ state }) => state !== 'queued' && state !== 'running'));
+    const { value: list } = use_watch(
+        `/v1/bakes?batch=${encodeURIComponent(path[1] ?? '')}&limit=1000`,
+        1000,
+        ({ bakes }) => bakes.every(({ state }) => state !== 'queued' && state !== 'running'),
+    );
     useEffect(() => {
         if (left === 0) announce('The batch has ended.');
     }, [left]);
@@ -25,7 +28,8 @@ export default function BatchPage({ path }) {
     const ended = batch.bakes - left;
     return html`<div>
         <${ProblemNote} problem=${problem} />
-        <p id="batch-state">${left === 0 ? `All ${batch.bakes} have ended.` : `${ended} of ${batch.bakes} have ended.`}</p>
+        <p id="batch-state">
+            ${left === 0 ? `All ${batch.bakes} have ended.` : `${ended} of ${batch.bakes} have ended.`}</p>
         <progress value=${ended} max=${batch.bakes} aria-label="Bakes that have ended"></progress>
         <${Facts} rows=${Object.entries(batch.states).filter(([, count]) => count > 0)} />
         <h2>Bakes</h2>

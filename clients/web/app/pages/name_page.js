@@ -5,25 +5,30 @@ import { Rebake } from '../bake/rebake.js';
 import { name_address, use_inputs } from '../gallery.js';
 import { use_app, use_json, use_list } from '../hooks.js';
 import { label_of } from '../input_facts.js';
-import { Loading, ProblemNote } from '../parts.js';
+import { Heads, Loading, ProblemNote } from '../parts.js';
 import { count_words, time_words } from '../words.js';
 
 function Versions({ versions, inputs }) {
     return html`<div class="scroll" tabindex="0" role="region" aria-label="Versions"><table class="striped">
-        <thead><tr><th scope="col">Version</th><th scope="col">File</th><th scope="col">Note</th><th scope="col">By</th><th scope="col">When</th></tr></thead>
-        <tbody>${versions.map((one) => html`<tr key=${one.version}><td>${one.version}</td><td>${label_of(one.sha256, {}, inputs.files)}</td>
-            <td>${one.note}</td><td>${one.token}</td><td>${time_words(one.created)}</td></tr>`)}</tbody>
+        <${Heads} titles=${['Version', 'File', 'Note', 'By', 'When']} />
+        <tbody>${versions.map(
+            one => html`<tr key=${one.version}><td>${one.version}</td><td>${label_of(one.sha256, {}, inputs.files)}</td>
+            <td>${one.note}</td><td>${one.token}</td><td>${time_words(one.created)}</td></tr>`,
+        )}</tbody>
     </table></div>`;
 }
 
 function NewVersion({ kind, name, inputs, on_change }) {
     const { api, announce } = use_app();
     const [problem, set_problem] = useState(null);
-    const put = async (event) => {
+    const put = async event => {
         event.preventDefault();
         const form = new FormData(event.target);
         try {
-            const { version } = await api.put(name_address(kind, name.path), { sha256: form.get('sha256'), note: form.get('note') });
+            const { version } = await api.put(name_address(kind, name.path), {
+                sha256: form.get('sha256'),
+                note: form.get('note'),
+            });
             announce(`${name.path} is now version ${version}.`);
             on_change();
         } catch (failure) {
@@ -31,10 +36,12 @@ function NewVersion({ kind, name, inputs, on_change }) {
         }
     };
     const others = (inputs.items ?? []).filter(({ id }) => id !== name.sha256);
-    if (others.length === 0) return html`<p>Nothing else is stored that it could point at: <a href=${`#/${kind}s`}>send a file</a>.</p>`;
+    if (others.length === 0)
+        return html`<p>Nothing else is stored that it could point at: <a href=${`#/${kind}s`}>send a file</a>.</p>`;
     return html`<form onSubmit=${put} class="toolbar">
         <label class="grow">File <select name="sha256" required>
-            ${others.map(({ id }) => html`<option key=${id} value=${id}>${label_of(id, inputs.names, inputs.files)}</option>`)}</select></label>
+            ${others.map(({ id }) => html`<option key=${id} value=${id}>${label_of(id, inputs.names, inputs.files)}
+                </option>`)}</select></label>
         <label class="grow">Note <input name="note" maxlength="500" /></label>
         <button type="submit" class="small">Put as version ${name.version + 1}</button>
         <${ProblemNote} problem=${problem} />
@@ -57,7 +64,8 @@ function RebakeModels({ name, bakes }) {
             set_problem(failure);
         }
     };
-    return html`<button onClick=${again}>Bake ${count_words(bakes.length, 'bake')} with version ${name.version}</button><${ProblemNote} problem=${problem} />`;
+    return html`<button onClick=${again}>Bake ${count_words(bakes.length, 'bake')} with version ${name.version}
+        </button><${ProblemNote} problem=${problem} />`;
 }
 
 function Followers({ kind, name }) {
@@ -65,15 +73,20 @@ function Followers({ kind, name }) {
     const environments = use_inputs('environment');
     const { items, problem } = use_list(`/v1/bakes?name=${encodeURIComponent(name.path)}`, 'bakes');
     const field = kind === 'model' ? 'hair' : 'environment';
-    const bakes = useMemo(() => (items ?? []).filter((bake) => bake.names[field]?.path === name.path), [items]);
-    const old = bakes.filter((bake) => bake.names[field].version < name.version);
+    const bakes = useMemo(() => (items ?? []).filter(bake => bake.names[field]?.path === name.path), [items]);
+    const old = bakes.filter(bake => bake.names[field].version < name.version);
     if (problem) return html`<${ProblemNote} problem=${problem} />`;
     if (!items) return html`<${Loading} what="the bakes" />`;
-    const outdated = old.filter((bake) => bake.model);
+    const outdated = old.filter(bake => bake.model);
     return html`<div>
-        <p id="followers">${count_words(bakes.length, 'bake')} asked for this name, ${old.length} of them for an older version.</p>
-        ${kind === 'environment' && outdated.length > 0 && html`<${Rebake} label="Bake with the newest version:"
-            request=${{ environment: `name:${name.path}`, bakes: outdated.map(({ id }) => id) }} />`}
+        <p id="followers">
+            ${count_words(bakes.length, 'bake')} asked for this name, ${old.length} of them for an older version.</p>
+        ${
+            kind === 'environment' &&
+            outdated.length > 0 &&
+            html`<${Rebake} label="Bake with the newest version:"
+            request=${{ environment: `name:${name.path}`, bakes: outdated.map(({ id }) => id) }} />`
+        }
         ${kind === 'model' && old.length > 0 && html`<${RebakeModels} name=${name} bakes=${old} />`}
         ${bakes.length > 0 && html`<${BakeTable} bakes=${bakes} models=${models} environments=${environments} />`}
     </div>`;
@@ -85,7 +98,8 @@ function OneName({ kind, path }) {
     if (!name) return problem ? html`<${ProblemNote} problem=${problem} />` : html`<${Loading} what="the name" />`;
     const ask = kind === 'model' ? 'hair' : 'environment';
     return html`<div>
-        <p>A request asks for it as <code>"${ask}": "name:${name.path}"</code>, or for one version as <code>name:${name.path}@${name.version}</code>.</p>
+        <p>A request asks for it as <code>"${ask}": "name:${name.path}"</code>,
+            or for one version as <code>name:${name.path}@${name.version}</code>.</p>
         <h2>New version</h2>
         <${NewVersion} key=${name.version} kind=${kind} name=${name} inputs=${inputs} on_change=${reload} />
         <h2>Versions</h2>
@@ -97,6 +111,8 @@ function OneName({ kind, path }) {
 
 export default function NamePage({ path }) {
     const [, kind, ...rest] = path;
-    if ((kind === 'model' || kind === 'environment') && rest.length > 0) return html`<${OneName} kind=${kind} path=${rest.join('/')} />`;
-    return html`<p>Names are listed with the <a href="#/environments">environments</a> and <a href="#/models">models</a> that they point at.</p>`;
+    if ((kind === 'model' || kind === 'environment') && rest.length > 0)
+        return html`<${OneName} kind=${kind} path=${rest.join('/')} />`;
+    return html`<p>Names are listed with the <a href="#/environments">environments</a> and <a
+        href="#/models">models</a> that they point at.</p>`;
 }

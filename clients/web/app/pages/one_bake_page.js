@@ -10,8 +10,8 @@ function Result({ bake }) {
     const [state, set_state] = useState({});
     useEffect(() => {
         import('../result/result.js').then(
-            (module) => set_state({ Content: module.Result }),
-            (problem) => set_state({ problem }),
+            module => set_state({ Content: module.Result }),
+            problem => set_state({ problem }),
         );
     }, []);
     if (state.problem) return html`<${ProblemNote} problem=${state.problem} />`;
@@ -28,6 +28,7 @@ export default function OneBakePage({ path }) {
         <${ProblemNote} problem=${problem} />
         <${Progress} bake=${bake} again=${again} />
         ${bake.state === 'done' && html`<${Result} bake=${bake} />`}
-        <details><summary>The request</summary><pre tabindex="0">${JSON.stringify(bake.request, null, 2)}</pre></details>
+        <details><summary>The request</summary><pre tabindex="0">${JSON.stringify(bake.request, null, 2)}</pre>
+            </details>
     </div>`;
 }

@@ -9,17 +9,19 @@ import { ProblemNote } from '../parts.js';
 import { count_words } from '../words.js';
 
 function OldEnvironment({ inputs, value, on_change }) {
-    return html`<label>Environment <select onChange=${(event) => on_change(event.target.value)}>
+    return html`<label>Environment <select onChange=${event => on_change(event.target.value)}>
         <option value="">choose</option>
-        ${(inputs.items ?? []).map(({ id }) => html`<option key=${id} value=${id} selected=${id === value}>${label_of(id, inputs.names, inputs.files)}</option>`)}
+        ${(inputs.items ?? []).map(({ id }) => html`<option key=${id} value=${id} selected=${id === value}>
+            ${label_of(id, inputs.names, inputs.files)}</option>`)}
     </select></label>`;
 }
 
 function OldName({ value, on_change }) {
     const { items } = use_list('/v1/names/environment', 'names');
-    return html`<label>Name <select onChange=${(event) => on_change(event.target.value)}>
+    return html`<label>Name <select onChange=${event => on_change(event.target.value)}>
         <option value="">choose</option>
-        ${(items ?? []).map(({ path }) => html`<option key=${path} value=${path} selected=${path === value}>${path}</option>`)}
+        ${(items ?? []).map(({ path }) => html`<option key=${path} value=${path} selected=${path === value}>${path}
+            </option>`)}
     </select></label>`;
 }
 
@@ -44,14 +46,18 @@ export default function RebakePage({ query }) {
         ['name', 'Every bake that asked for an environment by name'],
     ];
     return html`<div>
-        <p>The transmittance does not depend on the lighting: it is reused, and only irradiance maps are computed, once for all models with the same settings.</p>
+        <p>The transmittance does not depend on the lighting: it is reused, and only
+            irradiance maps are computed, once for all models with the same settings.</p>
         <fieldset><legend><strong>What to bake again</strong></legend>
-            ${ways.map(([value, words]) => html`<label key=${value}><input type="radio" name="how" checked=${how === value} onChange=${() => set_how(value)} /> ${words}</label>`)}
+            ${ways.map(([value, words]) => html`<label key=${value}><input type="radio" name="how"
+                checked=${how === value} onChange=${() => set_how(value)} /> ${words}</label>`)}
         </fieldset>
-        ${how === 'replaces' && html`<${OldEnvironment} inputs=${environments} value=${replaces} on_change=${set_replaces} />`}
+        ${how === 'replaces' && html`<${OldEnvironment} inputs=${environments} value=${replaces}
+            on_change=${set_replaces} />`}
         ${how === 'name' && html`<${OldName} value=${name} on_change=${set_name} />`}
         ${how === 'bakes' && html`<p><a href="#/bakes">Choose others</a></p>`}
-        <${Picker} kind="environment" title="New environment" inputs=${environments} value=${target} on_change=${set_target} />
+        <${Picker} kind="environment" title="New environment" inputs=${environments} value=${target}
+            on_change=${set_target} />
         <${ProblemNote} problem=${environments.problem} />
         <${Rebake} request=${source && target ? { environment: `sha256:${target}`, ...source } : null} />
     </div>`;

@@ -8,8 +8,8 @@ export default function ViewPage({ path }) {
     const [state, set_state] = useState({});
     useEffect(() => {
         import('../../viewer/viewer_page.js').then(
-            (module) => set_state({ ViewerPage: module.ViewerPage }),
-            (error) => set_state({ error }),
+            module => set_state({ ViewerPage: module.ViewerPage }),
+            error => set_state({ error }),
         );
     }, []);
     const [, left, right = null] = path;

@@ -22,12 +22,19 @@ export function texel_of(direction, n) {
     if (ax >= ay && ax >= az) [face, a, b] = x > 0 ? [0, -z / ax, -y / ax] : [1, z / ax, -y / ax];
     else if (ay >= az) [face, a, b] = y > 0 ? [2, x / ay, z / ay] : [3, x / ay, -z / ay];
     else [face, a, b] = z > 0 ? [4, x / az, -y / az] : [5, -x / az, -y / az];
-    const index = (t) => Math.min(n - 1, Math.floor(((t + 1) / 2) * n));
+    const index = t => Math.min(n - 1, Math.floor(((t + 1) / 2) * n));
     return { face, i: index(a), j: index(b) };
 }
 
 // [column, row] of each face in a net of 4 x 3 around +Z.
-const net_cells = [[2, 1], [0, 1], [1, 0], [1, 2], [1, 1], [3, 1]];
+const net_cells = [
+    [2, 1],
+    [0, 1],
+    [1, 0],
+    [1, 2],
+    [1, 1],
+    [3, 1],
+];
 
 /** The texel at pixel (x, y) of a net of 4n x 3n pixels; null outside of the faces. */
 export function net_texel(x, y, n) {
@@ -56,5 +63,5 @@ export function layout_of(kind, n) {
 export function texel_direction({ face, i, j }, n) {
     const direction = face_direction(face, (2 * (i + 0.5)) / n - 1, (2 * (j + 0.5)) / n - 1);
     const length = Math.hypot(...direction);
-    return direction.map((x) => x / length);
+    return direction.map(x => x / length);
 }

@@ -1,5 +1,6 @@
 // The files of a bake, and who reads which format.
 import { html, useState } from '../../vendor/preact.js';
+import { Heads } from '../parts.js';
 import { bytes_words } from '../words.js';
 
 // By the end of a name; the first that fits.
@@ -18,9 +19,9 @@ const readers = [
     ['.png', 'people'],
 ];
 
-export const readers_of = (name) => readers.find(([ending]) => name.endsWith(ending))?.[1] ?? '';
+export const readers_of = name => readers.find(([ending]) => name.endsWith(ending))?.[1] ?? '';
 
-const is_slice = (name) => /^specular_\d+/.test(name);
+const is_slice = name => /^specular_\d+/.test(name);
 
 /** files: of the bake's view; contents: { name: what it holds } of the manifest. */
 export function Downloads({ files, contents }) {
@@ -29,12 +30,16 @@ export function Downloads({ files, contents }) {
     const shown = all || slices < 4 ? files : files.filter(({ name }) => !is_slice(name));
     return html`<div>
         <div class="scroll" tabindex="0" role="region" aria-label="Files"><table class="striped">
-            <thead><tr><th scope="col">File</th><th scope="col" class="number">Size</th><th scope="col">What it holds</th><th scope="col">Who reads it</th></tr></thead>
-            <tbody>${shown.map(({ name, href, bytes, sha256 }) => html`<tr key=${name}>
+            <${Heads} titles=${['File', 'Size', 'What it holds', 'Who reads it']} />
+            <tbody>${shown.map(
+                ({ name, href, bytes, sha256 }) => html`<tr key=${name}>
                 <td><a href=${href} download=${name} title=${sha256 ? `SHA-256 ${sha256}` : null}>${name}</a></td>
-                <td class="number">${bytes === undefined ? '' : bytes_words(bytes)}</td><td>${contents[name] ?? ''}</td><td>${readers_of(name)}</td>
-            </tr>`)}</tbody>
+                <td class="number">${bytes === undefined ? '' : bytes_words(bytes)}</td><td>${contents[name] ?? ''}
+                    </td><td>${readers_of(name)}</td>
+            </tr>`,
+            )}</tbody>
         </table></div>
-        ${shown.length < files.length && html`<button class="small outline" onClick=${() => set_all(true)}>Show ${slices} files of single specular maps</button>`}
+        ${shown.length < files.length && html`<button class="small outline"
+            onClick=${() => set_all(true)}>Show ${slices} files of single specular maps</button>`}
     </div>`;
 }

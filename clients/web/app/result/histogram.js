@@ -16,7 +16,7 @@ export function spread(values) {
         sum += value;
     }
     const sorted = Float32Array.from(values).sort();
-    const part = (share) => sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))];
+    const part = share => sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))];
     return { counts, mean: sum / values.length, low: part(0.05), median: part(0.5), high: part(0.95) };
 }
 
@@ -24,7 +24,9 @@ export function spread(values) {
 async function load_transmittance(api, bake) {
     const page = await api.json(api.file_url(bake, 'strands.json'));
     const { offset, bytes } = page.arrays.find(({ name }) => name === 'tangent_and_transmittance');
-    const reply = await api.ask(api.file_url(bake, 'strands.bin'), { headers: { Range: `bytes=${offset}-${offset + bytes - 1}` } });
+    const reply = await api.ask(api.file_url(bake, 'strands.bin'), {
+        headers: { Range: `bytes=${offset}-${offset + bytes - 1}` },
+    });
     const buffer = await reply.arrayBuffer();
     const from = reply.status === 206 ? 0 : offset; // a proxy may not do ranges
     return half_values(new Uint16Array(buffer, from, bytes / 2), 3, 4);
@@ -39,16 +41,32 @@ function load_style() {
 async function draw(parent, counts) {
     load_style();
     const { default: uPlot } = await import('../../vendor/uplot.js');
-    const color = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-    const axis = { stroke: color('--pico-color'), grid: { stroke: color('--pico-muted-border-color'), width: 1 }, ticks: { stroke: color('--pico-muted-border-color') } };
+    const color = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+    const axis = {
+        stroke: color('--pico-color'),
+        grid: { stroke: color('--pico-muted-border-color'), width: 1 },
+        ticks: { stroke: color('--pico-muted-border-color') },
+    };
     const centers = counts.map((_, i) => (i + 0.5) / bins);
     return new uPlot(
         {
             width: Math.max(280, parent.clientWidth),
             height: 240,
             scales: { x: { time: false, range: [0, 1] } },
-            axes: [{ ...axis, label: 'A' }, { ...axis, label: 'vertices', size: 80 }],
-            series: [{ label: 'A' }, { label: 'vertices', stroke: color('--pico-primary'), fill: color('--pico-primary'), paths: uPlot.paths.bars({ size: [0.9] }), points: { show: false } }],
+            axes: [
+                { ...axis, label: 'A' },
+                { ...axis, label: 'vertices', size: 80 },
+            ],
+            series: [
+                { label: 'A' },
+                {
+                    label: 'vertices',
+                    stroke: color('--pico-primary'),
+                    fill: color('--pico-primary'),
+                    paths: uPlot.paths.bars({ size: [0.9] }),
+                    points: { show: false },
+                },
+            ],
         },
         [centers, counts],
         parent,
@@ -67,15 +85,36 @@ function use_dark() {
     return dark;
 }
 
+/** Whether the element of `ref` has come near what is seen, once it has. */
+function use_seen(ref) {
+    const [seen, set_seen] = useState(false);
+    useEffect(() => {
+        const observer = new IntersectionObserver(
+            entries => entries.some(({ isIntersecting }) => isIntersecting) && set_seen(true),
+            { rootMargin: '100px' },
+        );
+        observer.observe(ref.current);
+        return () => observer.disconnect();
+    }, []);
+    return seen;
+}
+
+/** A of a large groom is many megabytes: it is fetched when somebody scrolls to it. */
 export function Histogram({ bake }) {
+    const place = useRef(null);
+    const seen = use_seen(place);
+    return html`<div class="histogram" ref=${place}>${seen && html`<${Chart} bake=${bake} />`}</div>`;
+}
+
+function Chart({ bake }) {
     const { api } = use_app();
     const dark = use_dark();
     const [{ numbers, count, problem }, take] = useState({});
     const parent = useRef(null);
     useEffect(() => {
         load_transmittance(api, bake).then(
-            (values) => take({ numbers: spread(values), count: values.length }),
-            (failure) => take({ problem: failure }),
+            values => take({ numbers: spread(values), count: values.length }),
+            failure => take({ problem: failure }),
         );
     }, [bake]);
     useEffect(() => {
@@ -83,7 +122,7 @@ export function Histogram({ bake }) {
         let live = true;
         let plot = null;
         const fit = () => plot?.setSize({ width: Math.max(280, parent.current.clientWidth), height: 240 });
-        draw(parent.current, numbers.counts).then((drawn) => {
+        draw(parent.current, numbers.counts).then(drawn => {
             if (live) plot = drawn;
             else drawn.destroy();
         });

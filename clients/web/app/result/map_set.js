@@ -1,5 +1,5 @@
 // The irradiance maps of a bake as maps.f16 and maps.json hold them.
-import { half_value } from './half.js';
+import { from_half } from '../../viewer/half.js';
 
 export class MapSet {
     /** page: maps.json; buffer: maps.f16 */
@@ -14,7 +14,7 @@ export class MapSet {
     /** Linear RGB of a texel of map `m`. */
     value(m, { face, i, j }) {
         const at = this.maps[m].offset / 2 + ((face * this.face_size + j) * this.face_size + i) * 4;
-        return [0, 1, 2].map((channel) => half_value(this.halves[at + channel]) * this.scale);
+        return [0, 1, 2].map(channel => from_half(this.halves[at + channel]) * this.scale);
     }
 
     /** The stops that bring the brightest texel of map `m` to just below white. */

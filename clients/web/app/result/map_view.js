@@ -26,9 +26,9 @@ function Readout({ set, m, texel }) {
     const value = set.value(m, texel);
     const direction = texel_direction(texel, set.face_size);
     return html`<div class="readout"><${Facts} rows=${[
-        ['Value, linear RGB', html`<output id="texel-value">${value.map((x) => number_words(x, 5)).join(', ')}</output>`],
+        ['Value, linear RGB', html`<output id="texel-value">${value.map(x => number_words(x, 5)).join(', ')}</output>`],
         ['Texel', `${face_names[texel.face]}, column ${texel.i}, row ${texel.j}`],
-        ['Tangent', direction.map((x) => number_words(x, 3)).join(', ')],
+        ['Tangent', direction.map(x => number_words(x, 3)).join(', ')],
         ['Units', set.units],
     ]} /></div>`;
 }
@@ -48,18 +48,24 @@ function Picture({ set, m, kind, stops, on_texel }) {
         return true;
     };
     useEffect(() => void look(Math.floor(layout.width * 0.375), Math.floor(layout.height / 2)), [layout]);
-    const move = (event) => {
+    const move = event => {
         const box = canvas.current.getBoundingClientRect();
-        look(Math.floor(((event.clientX - box.left) / box.width) * layout.width), Math.floor(((event.clientY - box.top) / box.height) * layout.height));
+        look(
+            Math.floor(((event.clientX - box.left) / box.width) * layout.width),
+            Math.floor(((event.clientY - box.top) / box.height) * layout.height),
+        );
     };
-    const step = (event) => {
+    const step = event => {
         const [dx, dy] = arrows[event.key] ?? [];
         if (dx === undefined) return;
         event.preventDefault();
         look(at.current[0] + dx, at.current[1] + dy);
     };
-    return html`<canvas class="map-canvas" ref=${canvas} tabindex="0" role="img" onPointerMove=${move} onPointerDown=${move} onKeyDown=${step}
-        aria-label=${`${set.title(m)}, as ${kind === 'net' ? 'a net of the cube' : 'a lat-long picture'}; the arrow keys move the point whose value is read`}></canvas>`;
+    const place = kind === 'net' ? 'a net of the cube' : 'a lat-long picture';
+    const label = `${set.title(m)}, as ${place}; the arrow keys move the point whose value is read`;
+    return html`<canvas class="map-canvas" ref=${canvas} tabindex="0" role="img" onPointerMove=${move}
+        onPointerDown=${move} onKeyDown=${step}
+        aria-label=${label}></canvas>`;
 }
 
 function MapControls({ set, m, set_m, kind, set_kind, stops, set_stops, auto, set_auto }) {
@@ -67,21 +73,28 @@ function MapControls({ set, m, set_m, kind, set_kind, stops, set_stops, auto, se
     return html`<div>
         <fieldset><legend>Map</legend>
             <label><input type="radio" name="map" checked=${m === 0} onChange=${() => set_m(0)} /> Diffuse</label>
-            <label><input type="radio" name="map" checked=${m > 0} onChange=${() => set_m(1 + Math.floor(last / 2))} /> Specular</label>
+            <label><input type="radio" name="map" checked=${m > 0}
+                onChange=${() => set_m(1 + Math.floor(last / 2))} /> Specular</label>
         </fieldset>
-        ${m > 0 && html`<label>θ' of the specular map: ${Number(set.maps[m].theta_prime_deg.toFixed(3))}°
+        ${
+            m > 0 &&
+            html`<label>θ' of the specular map: ${Number(set.maps[m].theta_prime_deg.toFixed(3))}°
             <input type="range" id="theta" min="0" max=${last} value=${m - 1} aria-valuetext=${set.title(m)}
-                onInput=${(event) => set_m(1 + Number(event.target.value))} /></label>`}
+                onInput=${event => set_m(1 + Number(event.target.value))} /></label>`
+        }
         <fieldset><legend>Laid out as</legend>
-            <label><input type="radio" name="layout" checked=${kind === 'net'} onChange=${() => set_kind('net')} /> Net of the cube</label>
-            <label><input type="radio" name="layout" checked=${kind === 'latlong'} onChange=${() => set_kind('latlong')} /> Lat-long</label>
+            <label><input type="radio" name="layout" checked=${kind === 'net'}
+                onChange=${() => set_kind('net')} /> Net of the cube</label>
+            <label><input type="radio" name="layout" checked=${kind === 'latlong'}
+                onChange=${() => set_kind('latlong')} /> Lat-long</label>
         </fieldset>
         <label>Exposure: ${stops > 0 ? '+' : ''}${stops.toFixed(1)} stops
-            <input type="range" id="exposure" min="-16" max="16" step="0.1" value=${stops} onInput=${(event) => {
+            <input type="range" id="exposure" min="-16" max="16" step="0.1" value=${stops} onInput=${event => {
                 set_auto(false);
                 set_stops(Number(event.target.value));
             }} /></label>
-        <label><input type="checkbox" checked=${auto} onChange=${(event) => set_auto(event.target.checked)} /> Exposure by the map's brightest texel</label>
+        <label><input type="checkbox" checked=${auto}
+            onChange=${event => set_auto(event.target.checked)} /> Exposure by the map's brightest texel</label>
     </div>`;
 }
 
@@ -95,16 +108,20 @@ export function MapView({ bake }) {
     const [texel, set_texel] = useState(null);
     useEffect(() => {
         load_maps(api, bake).then(
-            (loaded) => take({ set: loaded }),
-            (failure) => take({ problem: failure }),
+            loaded => take({ set: loaded }),
+            failure => take({ problem: failure }),
         );
     }, [bake]);
     const own = useMemo(() => set?.exposure(m), [set, m]);
-    if (!set) return problem ? html`<${ProblemNote} problem=${problem} />` : html`<${Loading} what="the maps" />`;
+    if (!set)
+        return problem
+            ? html`<${ProblemNote} problem=${problem} />`
+            : html`<div class="maps"><div class="map-place"><${Loading} what="the maps" /></div></div>`;
     const stops = auto ? own : chosen;
     return html`<div class="maps">
         <div><p id="map-title"><strong>${set.title(m)}</strong></p>
-            <${Picture} set=${set} m=${m} kind=${kind} stops=${stops} on_texel=${set_texel} />
+            <div class="map-place"><${Picture} set=${set} m=${m} kind=${kind} stops=${stops} on_texel=${set_texel} />
+                </div>
             ${texel && html`<${Readout} set=${set} m=${m} texel=${texel} />`}</div>
         <${MapControls} ...${{ set, m, set_m, kind, set_kind, stops, set_stops, auto, set_auto }} />
     </div>`;

@@ -17,46 +17,70 @@ function ErrorBars({ manifest }) {
         rows.push(
             ['A against traced strands, RMSE', `${number_words(bar.rmse, 3)} (95 %: ${interval(bar.ci95.rmse)})`],
             ['Bias', `${number_words(bar.bias, 3)} (95 %: ${interval(bar.ci95.bias)})`],
-            ['Measured with', `${count_words(bar.vertices, 'vertex', 'vertices')}, ${count_words(bar.directions, 'direction')} each`],
+            [
+                'Measured with',
+                `${count_words(bar.vertices, 'vertex', 'vertices')}, ${count_words(bar.directions, 'direction')} each`,
+            ],
         );
     if (maps?.interpolation_bound_relative !== undefined)
-        rows.push(['Between specular maps, at most', `${number_words(100 * maps.interpolation_bound_relative, 3)} % of the largest value`]);
-    if (maps?.sh) rows.push(...Object.entries(maps.sh).filter(([, value]) => typeof value === 'number').map(([name, value]) => [title_words(name), number_words(value, 3)]));
+        rows.push([
+            'Between specular maps, at most',
+            `${number_words(100 * maps.interpolation_bound_relative, 3)} % of the largest value`,
+        ]);
+    if (maps?.sh)
+        rows.push(
+            ...Object.entries(maps.sh)
+                .filter(([, value]) => typeof value === 'number')
+                .map(([name, value]) => [title_words(name), number_words(value, 3)]),
+        );
     if (rows.length === 0) return null;
     return html`<h2>How good it is</h2><${Facts} rows=${rows} />`;
 }
 
 function Timings({ manifest }) {
-    const rows = Object.entries(manifest.timings_s ?? {}).map(([name, seconds]) => [title_words(name), seconds_words(seconds)]);
+    const rows = Object.entries(manifest.timings_s ?? {}).map(([name, seconds]) => [
+        title_words(name),
+        seconds_words(seconds),
+    ]);
     if (manifest.peak_memory_bytes) rows.push(['Peak memory', bytes_words(manifest.peak_memory_bytes)]);
     if (manifest.measured?.threads) rows.push(['Threads', String(manifest.measured.threads)]);
     return html`<h2>Time and memory</h2><${Facts} rows=${rows} />`;
 }
 
-function Previews({ bake }) {
+function Previews({ bake, manifest }) {
     const { api } = use_app();
     const sheets = bake.files.filter(({ name }) => /^preview_\w+\.png$/.test(name));
-    return html`<div class="previews">${sheets.map(({ name }) => html`<details key=${name}><summary>Contact sheet: ${title_words(name.slice(8, -4))}</summary>
-        <img src=${api.file_url(bake.id, name)} alt=${`Contact sheet of the ${name.slice(8, -4)}`} loading="lazy" /></details>`)}</div>`;
+    const size = name => manifest.files.find(file => file.name === name)?.shape ?? []; // rows, columns
+    return html`<div class="previews">${sheets.map(
+        ({ name }) => html`<details key=${name}><summary>Contact sheet: ${title_words(name.slice(8, -4))}</summary>
+        <img src=${api.file_url(bake.id, name)} height=${size(name)[0]} width=${size(name)[1]}
+            alt=${`Contact sheet of the ${name.slice(8, -4)}`} loading="lazy" /></details>`,
+    )}</div>`;
 }
 
-const without_raw = html`<p>This bake was made without the output <code>raw</code>; the contact sheets below show it.</p>`;
+const without_raw = html`<p>This bake was made without the output <code>raw</code>;
+    the contact sheets below show it.</p>`;
 
 export function Result({ bake }) {
     const { api } = use_app();
     const { value: manifest, problem } = use_json(api.file_url(bake.id, 'manifest.json'));
-    const has = (name) => bake.files.some((file) => file.name === name);
-    if (!manifest) return problem ? html`<${ProblemNote} problem=${problem} />` : html`<${Loading} what="the result" />`;
+    const has = name => bake.files.some(file => file.name === name);
+    if (!manifest)
+        return problem ? html`<${ProblemNote} problem=${problem} />` : html`<${Loading} what="the result" />`;
     const contents = Object.fromEntries(manifest.files.map(({ name, content }) => [name, content]));
     return html`<div>
         <p class="actions">
-            ${has('maps.f16') && has('strands.bin') && html`<a role="button" href=${`#/view/${bake.id}`}>See it on the hair</a>`}
-            ${bake.model && html`<a role="button" class="outline" href=${`#/rebake?bakes=${bake.id}`}>Re-bake under another environment</a>`}
+            ${has('maps.f16') && has('strands.bin') && html`<a role="button"
+                href=${`#/view/${bake.id}`}>See it on the hair</a>`}
+            ${bake.model && html`<a role="button" class="outline"
+                href=${`#/rebake?bakes=${bake.id}`}>Re-bake under another environment</a>`}
         </p>
         <${Warnings} texts=${manifest.warnings ?? []} />
-        ${bake.environment && html`<h2>Irradiance maps</h2>${has('maps.f16') ? html`<${MapView} bake=${bake.id} />` : without_raw}`}
-        ${bake.model && html`<h2>Transmittance A</h2>${has('strands.bin') ? html`<${Histogram} bake=${bake.id} />` : without_raw}`}
-        <${Previews} bake=${bake} />
+        ${bake.environment && html`<h2>Irradiance maps</h2>${has('maps.f16') ? html`<${MapView}
+            bake=${bake.id} />` : without_raw}`}
+        ${bake.model && html`<h2>Transmittance A</h2>${has('strands.bin') ? html`<${Histogram}
+            bake=${bake.id} />` : without_raw}`}
+        <${Previews} bake=${bake} manifest=${manifest} />
         <${ErrorBars} manifest=${manifest} />
         <${Timings} manifest=${manifest} />
         <h2>Files</h2>

@@ -27,6 +27,6 @@ async function with_store(mode, act) {
 }
 
 /** entry: { id, kind, file } */
-export const keep_file = (entry) => with_store('readwrite', (store) => store.put(entry)).catch(() => {});
-export const forget_file = (id) => with_store('readwrite', (store) => store.delete(id)).catch(() => {});
-export const kept_files = () => with_store('readonly', (store) => store.getAll()).catch(() => []);
+export const keep_file = entry => with_store('readwrite', store => store.put(entry)).catch(() => {});
+export const forget_file = id => with_store('readwrite', store => store.delete(id)).catch(() => {});
+export const kept_files = () => with_store('readonly', store => store.getAll()).catch(() => []);

@@ -51,11 +51,11 @@ export class Sha256 {
     /** 64 hexadecimal digits; nothing can be added afterwards. */
     hex() {
         const bits = BigInt(this.#bytes) * 8n;
-        const end = new Uint8Array(((this.#held < 56 ? 56 : 120) - this.#held) + 8);
+        const end = new Uint8Array((this.#held < 56 ? 56 : 120) - this.#held + 8);
         end[0] = 0x80;
         new DataView(end.buffer).setBigUint64(end.length - 8, bits);
         this.add(end);
-        return Array.from(this.#state, (word) => word.toString(16).padStart(8, '0')).join('');
+        return Array.from(this.#state, word => word.toString(16).padStart(8, '0')).join('');
     }
 
     #mix(data, at) {

@@ -51,13 +51,14 @@ export async function send_file(file, sha256, on_progress, signal) {
             onShouldRetry: may_pass,
             onProgress: on_progress,
             onSuccess: resolve,
-            onError: (error) => reject(Object.assign(new Error(words_of(error)), { status: error.originalResponse?.getStatus() })),
+            onError: error =>
+                reject(Object.assign(new Error(words_of(error)), { status: error.originalResponse?.getStatus() })),
         });
         signal.addEventListener('abort', () => {
             upload.abort();
             reject(new Error('stopped'));
         });
-        upload.findPreviousUploads().then((earlier) => {
+        upload.findPreviousUploads().then(earlier => {
             if (earlier.length) upload.resumeFromPreviousUpload(earlier[0]);
             upload.start();
         });

@@ -6,17 +6,17 @@ import { bytes_words } from '../words.js';
 function use_jobs(kind) {
     const { uploads } = use_app();
     const [, redraw] = useState(0);
-    useEffect(() => uploads.listen(() => redraw((n) => n + 1)), []);
-    return uploads.jobs.filter((job) => job.kind === kind);
+    useEffect(() => uploads.listen(() => redraw(n => n + 1)), []);
+    return uploads.jobs.filter(job => job.kind === kind);
 }
 
 const phase_words = {
     waiting: () => 'waits for the files before it',
     digesting: () => 'its digest is being made, to see whether the service has it',
-    sending: (job) => `${bytes_words(job.done)} of ${bytes_words(job.file.size)} sent`,
+    sending: job => `${bytes_words(job.done)} of ${bytes_words(job.file.size)} sent`,
     reading: () => 'the service reads it',
-    stored: (job) => (job.known ? 'the service had it already: nothing was sent' : 'stored'),
-    failed: (job) => job.problem,
+    stored: job => (job.known ? 'the service had it already: nothing was sent' : 'stored'),
+    failed: job => job.problem,
 };
 
 function Job({ job }) {
@@ -45,16 +45,19 @@ export function UploadPanel({ kind, label, accept, on_stored }) {
     const jobs = use_jobs(kind);
     const [over, set_over] = useState(false);
     const input = useRef(null);
-    const stored = jobs.filter(({ phase }) => phase === 'stored').map(({ id }) => id).join(' ');
+    const stored = jobs
+        .filter(({ phase }) => phase === 'stored')
+        .map(({ id }) => id)
+        .join(' ');
     useEffect(() => {
         if (stored) on_stored();
     }, [stored]);
-    const drop = (event) => {
+    const drop = event => {
         event.preventDefault();
         set_over(false);
         uploads.add(kind, event.dataTransfer.files);
     };
-    const drag = (event) => {
+    const drag = event => {
         event.preventDefault();
         set_over(true);
     };
@@ -67,6 +70,6 @@ export function UploadPanel({ kind, label, accept, on_stored }) {
         <label>${label}
             <input type="file" multiple accept=${accept} ref=${input} onChange=${pick} />
         </label>
-        ${jobs.length > 0 && html`<ul class="jobs">${jobs.map((job) => html`<${Job} key=${job.id} job=${job} />`)}</ul>`}
+        ${jobs.length > 0 && html`<ul class="jobs">${jobs.map(job => html`<${Job} key=${job.id} job=${job} />`)}</ul>`}
     </section>`;
 }

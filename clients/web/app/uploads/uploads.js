@@ -38,8 +38,10 @@ export class Uploads {
     /** Takes up what a reload interrupted, and what failed for want of a token. */
     async go_on() {
         for (const { id, kind, file } of await kept_files())
-            if (!this.jobs.some((job) => job.id === id)) this.jobs = [...this.jobs, { id, kind, file, phase: 'waiting', done: 0 }];
-        for (const job of this.jobs) if (job.phase === 'failed' && job.status === 401) this.#update(job, { phase: 'waiting' });
+            if (!this.jobs.some(job => job.id === id))
+                this.jobs = [...this.jobs, { id, kind, file, phase: 'waiting', done: 0 }];
+        for (const job of this.jobs)
+            if (job.phase === 'failed' && job.status === 401) this.#update(job, { phase: 'waiting' });
         this.#changed();
         this.#run();
     }
@@ -60,7 +62,7 @@ export class Uploads {
     async #run() {
         if (this.#running) return;
         this.#running = true;
-        for (let job; (job = this.jobs.find(({ phase }) => phase === 'waiting')); ) await this.#send(job);
+        for (let job; (job = this.jobs.find(({ phase }) => phase === 'waiting'));) await this.#send(job);
         this.#running = false;
     }
 
@@ -69,11 +71,11 @@ export class Uploads {
         this.#stops.set(job.id, stop);
         try {
             this.#update(job, { phase: 'digesting', done: 0 });
-            const sha256 = await digest_of(job.file, (done) => this.#update(job, { done }), stop.signal);
+            const sha256 = await digest_of(job.file, done => this.#update(job, { done }), stop.signal);
             const known = await this.#is_stored(sha256);
             if (!known) {
                 this.#update(job, { phase: 'sending', sha256, done: 0 });
-                await send_file(job.file, sha256, (done) => this.#update(job, { done }), stop.signal);
+                await send_file(job.file, sha256, done => this.#update(job, { done }), stop.signal);
             }
             this.#update(job, { phase: 'reading', sha256, known });
             const entry = job.kind === 'mesh' ? null : await this.#api.post(`/v1/${job.kind}s`, { sha256 });
@@ -111,7 +113,7 @@ export class Uploads {
 
 // crypto.randomUUID exists only where the page is at home or comes over TLS.
 function random_id() {
-    return Array.from(crypto.getRandomValues(new Uint32Array(4)), (word) => word.toString(16)).join('-');
+    return Array.from(crypto.getRandomValues(new Uint32Array(4)), word => word.toString(16)).join('-');
 }
 
 function digest_of(file, on_progress, signal) {
