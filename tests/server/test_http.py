@@ -56,6 +56,7 @@ class Page(unittest.TestCase):
             d.config = '[web]\nfolder = "nowhere"'
             with self.assertRaisesRegex(AssertionError, "web.folder"):
                 d.start()
+            d.process.stdout.close()
 
 
 class Rim(unittest.TestCase):

@@ -1,5 +1,6 @@
 // The real daemon with the real page, in a folder of its own, on a free port of 127.0.0.1.
 import { spawn, spawnSync } from 'node:child_process';
+import { createHash } from 'node:crypto';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { dirname, join, resolve } from 'node:path';
@@ -23,17 +24,23 @@ export function hairbake(...words) {
     if (run.status !== 0) throw new Error(`hairbake ${words.join(' ')}: ${run.stderr}`);
 }
 
+function token_table(token) {
+    const digest = createHash('sha256').update(token).digest('hex');
+    return `[[token]]\nname = "artist"\nsha256 = "${digest}"\nscopes = ["read", "upload", "bake"]\n`;
+}
+
 export class Daemon {
-    /** `tokens`: lines of [[token]] tables. */
-    static async start({ tokens = '' } = {}) {
+    /** With a token, the daemon demands it, and what is asked here has it. */
+    static async start({ token = '' } = {}) {
         const daemon = new Daemon();
+        daemon.headers = token ? { Authorization: `Bearer ${token}` } : {};
         daemon.folder = mkdtempSync(join(tmpdir(), 'hairbake-page-'));
         stage_page(join(daemon.folder, 'web'));
         const config = join(daemon.folder, 'hairbake.toml');
         writeFileSync(
             config,
             '[listen]\nport = 0\n[store]\nfolder = "store"\n[workers]\ncount = 1\nthreads = 1\n' +
-                `[web]\nfolder = "web"\n${tokens}`,
+                `[web]\nfolder = "web"\n${token && token_table(token)}`,
         );
         daemon.process = spawn(join(programs, 'hairbaked'), ['--config', config], {
             stdio: ['ignore', 'pipe', 'pipe'],
@@ -56,7 +63,10 @@ export class Daemon {
     }
 
     async json(path, options) {
-        const reply = await fetch(this.address + path, options);
+        const reply = await fetch(this.address + path, {
+            ...options,
+            headers: { ...this.headers, ...options?.headers },
+        });
         if (!reply.ok) throw new Error(`${path}: ${reply.status} ${await reply.text()}`);
         return reply.json();
     }
@@ -72,7 +82,7 @@ export class Daemon {
     async add(kind, file) {
         const reply = await fetch(`${this.address}/v1/${kind}s`, {
             method: 'POST',
-            headers: { 'Content-Type': 'application/octet-stream' },
+            headers: { ...this.headers, 'Content-Type': 'application/octet-stream' },
             body: readFileSync(file),
         });
         if (!reply.ok) throw new Error(`${file}: ${reply.status} ${await reply.text()}`);

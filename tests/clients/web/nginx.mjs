@@ -1,10 +1,23 @@
-// nginx in front of a daemon, with no more than what a page's speed depends on: kept connections and compression.
+// nginx with the committed configuration (docker/) in front of a daemon that demands tokens.
 import { spawn } from 'node:child_process';
-import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import {
+    chmodSync,
+    closeSync,
+    copyFileSync,
+    mkdtempSync,
+    openSync,
+    readFileSync,
+    rmSync,
+    writeFileSync,
+} from 'node:fs';
 import { createServer } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
 import { patience_ms } from './daemon.mjs';
+
+const docker = fileURLToPath(new URL('../../../docker/', import.meta.url));
+const nobody = 65534;
 
 export function free_port() {
     return new Promise(found => {
@@ -15,61 +28,41 @@ export function free_port() {
     });
 }
 
-const config = (port, address) => `
-daemon off;
-pid nginx.pid;
-error_log stderr warn;
-events {}
-http {
-    access_log off;
-    client_body_temp_path body;
-    proxy_temp_path proxy;
-    fastcgi_temp_path unused;
-    uwsgi_temp_path unused;
-    scgi_temp_path unused;
-    gzip on;
-    gzip_proxied any;
-    gzip_types application/json text/css text/javascript image/svg+xml;
-    server {
-        listen 127.0.0.1:${port};
-        location / {
-            proxy_http_version 1.1;
-            proxy_set_header Connection close;
-            proxy_set_header Host $http_host;
-            proxy_request_buffering off;
-            proxy_pass ${address};
-        }
-    }
+/** Of the site's file, only where it listens and what it passes requests on to are replaced. */
+function site(port, daemon_address) {
+    return readFileSync(join(docker, 'nginx-site.conf'), 'utf8')
+        .replace(/server unix:[^;]+;/, `server ${new URL(daemon_address).host};`)
+        .replace('listen 8000 ', `listen 127.0.0.1:${port} `);
 }
-`;
 
 /** { address, stop() } */
 export async function start_nginx(daemon_address) {
     const folder = mkdtempSync(join(tmpdir(), 'hairbake-nginx-'));
-    mkdirSync(join(folder, 'body'));
     const port = await free_port();
-    writeFileSync(join(folder, 'nginx.conf'), config(port, daemon_address));
+    for (const name of ['nginx.conf', 'nginx-locations.conf']) copyFileSync(join(docker, name), join(folder, name));
+    writeFileSync(join(folder, 'site.conf'), site(port, daemon_address));
+    chmodSync(folder, 0o770);
+    const log = openSync(join(folder, 'log'), 'a'); // it opens /dev/stdout, which node's own pipes do not allow
+    chmodSync(join(folder, 'log'), 0o660);
     const nginx = spawn('nginx', ['-p', folder, '-c', join(folder, 'nginx.conf')], {
-        stdio: ['ignore', 'ignore', 'pipe'],
+        stdio: ['ignore', log, log],
         env: { ...process.env, PATH: `${process.env.PATH}:/usr/sbin` },
+        ...(process.getuid() === 0 && { uid: nobody, gid: process.getgid() }), // as a deployment runs it: never as root
     });
-    let log = '';
-    nginx.stderr.on('data', text => (log += text));
     const address = `http://127.0.0.1:${port}`;
     for (const end = Date.now() + patience_ms; ; await new Promise(done => setTimeout(done, 50))) {
-        if (nginx.exitCode !== null || Date.now() > end) throw new Error(`nginx did not start: ${log}`);
-        if (
-            await fetch(`${address}/healthz`).then(
-                reply => reply.ok,
-                () => false,
-            )
-        )
-            break;
+        if (nginx.exitCode !== null || Date.now() > end) throw new Error(readFileSync(join(folder, 'log'), 'utf8'));
+        const alive = await fetch(`${address}/healthz`).then(
+            reply => reply.ok,
+            () => false,
+        );
+        if (alive) break;
     }
     const stop = async () => {
         const ended = new Promise(done => nginx.once('exit', done));
         nginx.kill('SIGTERM');
         await ended;
+        closeSync(log);
         rmSync(folder, { recursive: true, force: true });
     };
     return { address, stop };

@@ -255,9 +255,7 @@ test('the form refuses what the schema does not allow and says what is', async (
 
 test('with tokens the page asks for one, takes the right one only, and forgets it on signing out', async () => {
     const token = 'a-token-of-this-test';
-    const locked = await Daemon.start({
-        tokens: `[[token]]\nname = "artist"\nsha256 = "${sha256(token)}"\nscopes = ["read", "upload", "bake"]\n`,
-    });
+    const locked = await Daemon.start({ token });
     try {
         await with_page(locked.address, async page => {
             await page.goto(locked.address);
