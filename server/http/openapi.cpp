@@ -33,9 +33,13 @@ std::string openapi() {
     Json& schemas = document["components"]["schemas"];
     schemas["BakeRequest"] = bake_request_schema();
     schemas["RebakeRequest"]["properties"]["irradiance"] = schemas["BakeRequest"]["properties"]["irradiance"];
-    for (const Preset& preset : presets())
-        document["components"]["examples"][std::string(preset.name)] = {
-            {"summary", preset_description(preset)}, {"value", Json::parse(preset.json).at("request")}};
+    Json& bake = document["paths"]["/v1/bakes"]["post"]["requestBody"]["content"]["application/json"];
+    for (const Preset& preset : presets()) {
+        const std::string name(preset.name);
+        document["components"]["examples"][name] = {{"summary", preset_description(preset)},
+                                                    {"value", Json::parse(preset.json).at("request")}};
+        bake["examples"][name] = {{"$ref", "#/components/examples/" + name}};
+    }
     return document.dump(1);
 }
 
