@@ -70,7 +70,7 @@ class BadWorkers(unittest.TestCase):
             program = d.path / "worker"
             program.write_text(WORKER.replace("REAL", str(PROGRAMS / "hairbake-worker")))
             program.chmod(0o755)
-            d.limits = f'program = "{program}"\nwall_s = 15'
+            d.limits = f'program = "{program}"\nwall_s = 30'
             d.start()
             hair = d.put(hair_bytes())
 
@@ -79,8 +79,8 @@ class BadWorkers(unittest.TestCase):
                 self.assertEqual(reply.status, 202, reply.body)
                 return reply.json["id"]
 
-            words = {11: "Segmentation fault", 12: "not done after 15 seconds", 13: "not done after 15 seconds",
-                     14: "not done after 15 seconds", 15: "manifest", 16: "ended with code 3", 17: "as I say",
+            words = {11: "Segmentation fault", 12: "not done after 30 seconds", 13: "not done after 30 seconds",
+                     14: "not done after 30 seconds", 15: "manifest", 16: "ended with code 3", 17: "as I say",
                      18: "ended with code 0"}
             bakes = {seed: post(seed) for seed in [*words, 1, 2]}
             for seed, word in words.items():
