@@ -91,7 +91,10 @@ void Queue::add_stage(Sql& sql, const StagePlan& stage, int priority) {
 Submitted Queue::add_bake(Sql& sql, const BakePlan& plan) {
     const auto rows = sql.rows("SELECT state FROM bakes WHERE id = ?", {plan.id});
     const std::string state = rows.empty() ? "" : rows[0].text(0);
-    if (state == "done") return {plan.id, state, note_done(sql, plan.id)};
+    // A name that it is asked by now is noted beside those that it was asked by before.
+    if (is_live(state) || state == "done")
+        sql.run("UPDATE bakes SET names = json_patch(names, ?) WHERE id = ?", {plan.names, plan.id});
+    if (state == "done") return {plan.id, state, note_done(sql, plan.id, plan.names)};
     for (const StagePlan* stage : plan.stages()) add_stage(sql, *stage, plan.priority);
     if (rows.empty())
         sql.run(
@@ -111,8 +114,11 @@ Submitted Queue::add_bake(Sql& sql, const BakePlan& plan) {
     return {plan.id, after, false};
 }
 
-bool Queue::note_done(Sql& sql, const std::string& bake) {
-    const auto rows = sql.rows("SELECT transmittance, irradiance FROM bakes WHERE id = ? AND state = 'done'", {bake});
+bool Queue::note_done(Sql& sql, const std::string& bake, const std::string& names) {
+    const auto rows = sql.rows(
+        "SELECT transmittance, irradiance FROM bakes WHERE id = ? AND state = 'done' AND json_patch(names, ?) = "
+        "json(names)",
+        {bake, names});
     if (rows.empty()) return false;
     for (const std::size_t column : {0, 1})
         if (!rows[0].null(column)) touch_stage(sql, rows[0].text(column));

@@ -51,8 +51,8 @@ public:
     /// At boot: what ran is queued again; stages that lost a blob too.
     void recover(const std::vector<std::string>& lost_blobs);
 
-    /// Whether the bake is done; then its stages count as used just now.
-    bool note_done(Sql& sql, const std::string& bake);
+    /// Whether the bake is done and `names` (as in BakePlan) are noted with it; then its stages count as used just now.
+    bool note_done(Sql& sql, const std::string& bake, const std::string& names);
 
     /// Takes requests in one transaction; `batch`, when not empty, is made with them in it. Inputs were checked under
     /// database.lock(), which the caller still holds.

@@ -106,8 +106,9 @@ OpenBlob Service::open_blob(const std::string& digest) try {
 std::optional<Service::Answer> Service::answer_if_done(const std::string& body) {
     std::optional<Answer> answer;
     database_.read([&](Sql& sql) {
-        const std::string id = bake_id_of(read_bake_request(sql, body).request);
-        if (queue_.note_done(sql, id)) answer = {id, "done", bakes_.get(id)};
+        const AskedBake asked = read_bake_request(sql, body);
+        const std::string id = bake_id_of(asked.request);
+        if (queue_.note_done(sql, id, asked.names)) answer = {id, "done", bakes_.get(id)};
     });
     return answer;
 }

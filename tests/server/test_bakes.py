@@ -224,6 +224,14 @@ class Names(unittest.TestCase):
                 self.assertEqual(reply["environment"], digest)
                 self.assertEqual(reply["names"]["environment"], {"path": "stage1/sunset", "version": version})
             self.assertEqual(len(d.ask("GET", "/v1/bakes?name=stage1/sunset").json["bakes"]), 2)
+            # A bake that is there already and is asked for by a name follows that name from then on.
+            bake = d.wait(d.ask("POST", "/v1/bakes", quick_request(hair, d.put(hdr_bytes(red=92)))).json["id"])["id"]
+            d.ask("PUT", "/v1/names/environment/dusk", {"sha256": sha256(hdr_bytes(red=92))})
+            self.assertEqual(d.ask("GET", "/v1/bakes?name=dusk").json["bakes"], [])
+            reply = d.ask("POST", "/v1/bakes", {**quick_request(hair), "environment": "name:dusk"})
+            self.assertEqual((reply.status, reply.json["id"]), (200, bake))
+            self.assertEqual(reply.json["names"], {"environment": {"path": "dusk", "version": 1}})
+            self.assertEqual([b["id"] for b in d.ask("GET", "/v1/bakes?name=dusk").json["bakes"]], [bake])
             self.assertEqual(d.ask("GET", "/v1/names/environment").json["names"][0]["version"], 2)
             for path, status in (("environment/a%2fb", 400), ("environment/a/../b", 400), ("colour/x", 404), ("model/a%20b", 422)):
                 self.assertEqual(d.ask("PUT", f"/v1/names/{path}", {"sha256": first}).status, status, path)

@@ -31,7 +31,7 @@ export function BakeOrder({ api, request, old, label, disabled = false }) {
 function Progress({ bake, old }) {
     if (!bake) return null;
     if (bake.state !== 'done')
-        return `The new bake is ${bake.state}${bake.error ? `: ${bake.error.detail ?? ''}` : ''}.`;
+        return `The new bake is ${bake.state}${bake.error ? `: ${bake.error.message ?? ''}` : ''}.`;
     return html`Baked: <a href=${`#/view/${bake.id}`}>open the new bake</a>
         ${old && old !== bake.id && html` or <a href=${`#/view/${old}/${bake.id}`}>compare it with this one</a>`}.`;
 }
