@@ -1,7 +1,7 @@
 """Bakes every groom of a folder under three lightings: python3 three_lightings.py GROOMS SKY1 SKY2 SKY3 OUT
 
-The service and its token come from HAIRBAKE_SERVER and HAIRBAKE_TOKEN_FILE. Transmittance does not depend on the lighting:
-it is computed once a groom, and the maps once a lighting. Results go to OUT/SKY/GROOM.
+The service and its token come from HAIRBAKE_SERVER and HAIRBAKE_TOKEN_FILE. Transmittance does not depend on the
+lighting: it is computed once a groom, and the maps once a lighting. Results go to OUT/SKY/GROOM.
 """
 import os
 import sys

@@ -14,8 +14,8 @@ from ._errors import BakeCancelled, BakeFailed, HairbakeError, UsageError
 from ._fetch import check_result_folder
 from ._http import identifier
 
-EPILOG = """exit codes: 0 done, 2 usage, 3 bad input, 5 interrupted (the bake goes on on the server), 6 server unreachable,
-7 refused, 8 bake failed, 9 bake cancelled on the server"""
+EPILOG = """exit codes: 0 done, 2 usage, 3 bad input, 5 interrupted (the bake goes on on the server), 6 server
+unreachable, 7 refused, 8 bake failed, 9 bake cancelled on the server"""
 Arguments = argparse.Namespace
 
 
@@ -30,7 +30,8 @@ class Display:
             self.event("progress", stage=stage, stage_fraction=round(fraction, 4))
         elif self.bar:
             filled = round(32 * min(1.0, fraction))
-            print(f"\r[{'#' * filled}{'.' * (32 - filled)}] {100 * fraction:3.0f} %  {stage}\033[K", end="", file=sys.stderr)
+            bar = "#" * filled + "." * (32 - filled)
+            print(f"\r[{bar}] {100 * fraction:3.0f} %  {stage}\033[K", end="", file=sys.stderr, flush=True)
 
     def event(self, event: str, **facts: Any) -> None:
         print(json.dumps({"event": event, **facts}), flush=True)
@@ -101,8 +102,10 @@ def tell_ended(client: Client, display: Display, bakes: List[Bake], folder_of: C
             display.line(f"{bake.id} done", "done", id=bake.id)
     if lost:
         failed = [bake for bake in lost if bake.state == "failed"]
-        words = f"{len(lost)} of {len(bakes)} bakes " + ("failed: " if failed else "were cancelled")
-        raise (BakeFailed if failed else BakeCancelled)(words + (client.with_paths(failed[0].message) if failed else ""))
+        words = f"{len(lost)} of {len(bakes)} bakes "
+        if failed:
+            raise BakeFailed(words + "failed: " + client.with_paths(failed[0].message), failed[0].field)
+        raise BakeCancelled(words + "were cancelled")
 
 
 def wait_for(client: Client, which: List[str], wait: Callable[[], List[Bake]], server: str) -> List[Bake]:
@@ -202,7 +205,8 @@ def upload(client: Client, arguments: Arguments, display: Display) -> None:
 
 def parser() -> argparse.ArgumentParser:
     common = argparse.ArgumentParser(add_help=False)
-    common.add_argument("--server", default=os.environ.get("HAIRBAKE_SERVER"), help="http://HOST:PORT (HAIRBAKE_SERVER)")
+    common.add_argument("--server", default=os.environ.get("HAIRBAKE_SERVER"),
+                        help="http://HOST:PORT (HAIRBAKE_SERVER)")
     common.add_argument("--token-file", default=os.environ.get("HAIRBAKE_TOKEN_FILE"), help="(HAIRBAKE_TOKEN_FILE)")
     common.add_argument("--ca-file", help="certificates (PEM) to trust instead of the system's")
     common.add_argument("--patience", type=float, default=120, help="seconds to go on trying; default 120")
@@ -216,7 +220,8 @@ def parser() -> argparse.ArgumentParser:
 
     def command(run: Callable[[Client, Arguments, Display], None], words: str,
                 *parents: argparse.ArgumentParser) -> argparse.ArgumentParser:
-        made = commands.add_parser(run.__name__, help=words, description=words, parents=[common, *parents], epilog=EPILOG)
+        made = commands.add_parser(run.__name__, help=words, description=words, parents=[common, *parents],
+                                   epilog=EPILOG)
         made.set_defaults(run=run)
         return made
 
@@ -227,7 +232,8 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--receiver")
     made.add_argument("--request", metavar="FILE", help="JSON fields of the request, e.g. of hairbake presets NAME")
     made.add_argument("--outputs", help="npy,exr,hair ...")
-    made.add_argument("--set", action="append", default=[], metavar="PATH=VALUE", help="e.g. transmittance.method=trace")
+    made.add_argument("--set", action="append", default=[], metavar="PATH=VALUE",
+                      help="e.g. transmittance.method=trace")
     command(status, "tell how bakes are doing").add_argument("id", nargs="*")
     for run, words in ((wait, "wait until bakes have ended"), (cancel, "cancel bakes")):
         made = command(run, words)

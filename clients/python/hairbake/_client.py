@@ -80,9 +80,10 @@ def _bake(view: Any) -> Bake:
 
 def _batch(view: Json) -> Batch:
     states, bakes = view.get("states"), view.get("bakes")
-    if not isinstance(bakes, int) or not isinstance(states, dict) or not all(isinstance(n, int) for n in states.values()):
+    counted = isinstance(states, dict) and all(isinstance(count, int) for count in states.values())
+    if not isinstance(bakes, int) or not counted:
         raise Refused("the server's answer is no batch")
-    return Batch(identifier(view.get("id")), bakes, states)
+    return Batch(identifier(view.get("id")), bakes, dict(states or {}))
 
 
 def _id(bake: BakeOrId) -> str:
@@ -90,13 +91,14 @@ def _id(bake: BakeOrId) -> str:
 
 
 class Client:
-    """Talks to one service. `token_file` or `token` where it wants one; `patience_s` is how long to go on trying while it
-    cannot be reached (a restart, for example); `ca_file` (PEM) replaces the system's certificates; `progress` is told the
-    stage and its fraction. Inputs are paths, "sha256:DIGEST" or "name:NAME". Every method raises HairbakeError: Unreachable,
-    Refused (with the field at fault), or the class itself for a local file. Not thread-safe."""
+    """Talks to one service. `token_file` or `token` where it wants one; `patience_s` is how long to go on trying while
+    it cannot be reached (a restart, for example); `ca_file` (PEM) replaces the system's certificates; `progress` is
+    told the stage and its fraction. Inputs are paths, "sha256:DIGEST" or "name:NAME". Every method raises
+    HairbakeError: Unreachable, Refused (with the field at fault), or the class itself for a local file. Not
+    thread-safe."""
 
-    def __init__(self, server: str, token: str = "", token_file: Optional[PathLike] = None, ca_file: Optional[str] = None,
-                 patience_s: float = 120, progress: Optional[Progress] = None) -> None:
+    def __init__(self, server: str, token: str = "", token_file: Optional[PathLike] = None,
+                 ca_file: Optional[str] = None, patience_s: float = 120, progress: Optional[Progress] = None) -> None:
         self._http = Http(server, read_token(token_file) if token_file else token, ca_file, patience_s)
         self._progress: Progress = progress or (lambda stage, fraction: None)
         self._paths: Dict[str, str] = {}  # references of files that were sent
@@ -123,10 +125,11 @@ class Client:
     def submit(self, hair: Optional[PathLike] = None, environment: Optional[PathLike] = None, *,
                occluder: Optional[PathLike] = None, receiver: Optional[PathLike] = None, priority: int = 0,
                **fields: Any) -> Bake:
-        """Asks for a bake; a request that was baked before is done at once. `fields` are the other blocks of the request:
-        strand={...}, transmittance={...}, irradiance={...}, outputs=[...]."""
+        """Asks for a bake; a request that was baked before is done at once. `fields` are the other blocks of the
+        request: strand={...}, transmittance={...}, irradiance={...}, outputs=[...]."""
         request: Json = {**fields, "priority": priority}
-        for field, value in (("hair", hair), ("environment", environment), ("occluder", occluder), ("receiver", receiver)):
+        inputs = {"hair": hair, "environment": environment, "occluder": occluder, "receiver": receiver}
+        for field, value in inputs.items():
             if value is not None:
                 request[field] = self._reference(value)
         return _bake(self._http.json("POST", "/v1/bakes", request))
@@ -185,8 +188,8 @@ class Client:
             pause = min(1.3 * pause, LONGEST_POLL_S)
 
     def fetch(self, bake: BakeOrId, folder: PathLike) -> Result:
-        """The result as a folder that appears whole or not at all: new, empty or an earlier result. An interrupted fetch
-        goes on where it stopped; every file is checked against its digest."""
+        """The result as a folder that appears whole or not at all: new, empty or an earlier result. An interrupted
+        fetch goes on where it stopped; every file is checked against its digest."""
         return fetch_result(self._http, _id(bake), Path(folder), lambda fraction: self._progress("fetch", fraction))
 
     def cancel(self, bake: BakeOrId) -> None:
@@ -197,21 +200,24 @@ class Client:
         if answer.status != 200:
             raise answer.refuse()
 
-    def rebake(self, environment: PathLike, *, bakes: Optional[Sequence[BakeOrId]] = None, replaces: Optional[PathLike] = None,
-               name: Optional[str] = None, models: Optional[Sequence[PathLike]] = None,
-               irradiance: Optional[Mapping[str, Any]] = None, priority: int = 0) -> Batch:
-        """Bakes grooms again under a new environment; their transmittance is not computed again. Exactly one of `bakes`,
-        `replaces` (an environment), `name` (of an environment) and `models` says which."""
+    def rebake(self, environment: PathLike, *, bakes: Optional[Sequence[BakeOrId]] = None,
+               replaces: Optional[PathLike] = None, name: Optional[str] = None,
+               models: Optional[Sequence[PathLike]] = None, irradiance: Optional[Mapping[str, Any]] = None,
+               priority: int = 0) -> Batch:
+        """Bakes grooms again under a new environment; their transmittance is not computed again. Exactly one of
+        `bakes`, `replaces` (an environment), `name` (of an environment) and `models` says which."""
         return _batch(self._rebake("", environment, bakes, replaces, name, models, irradiance, priority))
 
     def rebake_forecast(self, environment: PathLike, *, bakes: Optional[Sequence[BakeOrId]] = None,
                         replaces: Optional[PathLike] = None, name: Optional[str] = None,
-                        models: Optional[Sequence[PathLike]] = None, irradiance: Optional[Mapping[str, Any]] = None) -> Json:
+                        models: Optional[Sequence[PathLike]] = None,
+                        irradiance: Optional[Mapping[str, Any]] = None) -> Json:
         """What rebake() would do: {"bakes": n, "reused_stages": {...}, "computed_stages": {...}}."""
         return self._rebake("?dry_run=1", environment, bakes, replaces, name, models, irradiance, 0)
 
     def batch(self, batch: Union[Batch, str]) -> Batch:
-        return _batch(self._http.json("GET", f"/v1/batches/{batch.id if isinstance(batch, Batch) else identifier(batch)}"))
+        id = batch.id if isinstance(batch, Batch) else identifier(batch)
+        return _batch(self._http.json("GET", f"/v1/batches/{id}"))
 
     def wait_batch(self, batch: Union[Batch, str]) -> List[Bake]:
         """Until all of its bakes have ended, however; those bakes."""
@@ -246,9 +252,9 @@ class Client:
             tags[bake] = answer.headers["etag"]
         return _bake(answer.json())
 
-    def _rebake(self, query: str, environment: PathLike, bakes: Optional[Sequence[BakeOrId]], replaces: Optional[PathLike],
-                name: Optional[str], models: Optional[Sequence[PathLike]], irradiance: Optional[Mapping[str, Any]],
-                priority: int) -> Json:
+    def _rebake(self, query: str, environment: PathLike, bakes: Optional[Sequence[BakeOrId]],
+                replaces: Optional[PathLike], name: Optional[str], models: Optional[Sequence[PathLike]],
+                irradiance: Optional[Mapping[str, Any]], priority: int) -> Json:
         body: Json = {"environment": self._reference(environment), "priority": priority}
         if bakes is not None:
             body["bakes"] = [_id(bake) for bake in bakes]

@@ -191,7 +191,8 @@ class _Fetch:
             self.received += len(piece)
             self.report(end)
 
-        answer = self.http.once("GET", self.address + file.name, headers, sink=sink, most_bytes=max(file.bytes, 1 << 16))
+        most = max(file.bytes, 1 << 16)  # a refusal has a body too
+        answer = self.http.once("GET", self.address + file.name, headers, sink=sink, most_bytes=most)
         if answer.status == 416:
             stream.truncate(0)
         elif answer.status not in (200, 206):
@@ -214,8 +215,8 @@ class _Fetch:
 
 
 def fetch_result(http: Http, bake: str, folder: Path, progress: Optional[Callable[[float], None]] = None) -> Result:
-    """Fetches into `folder`: new, empty or an earlier result, whose files of the same digest are not fetched again. What
-    is there so far lies in a hidden folder beside it; the next fetch goes on there. Raises HairbakeError."""
+    """Fetches into `folder`: new, empty or an earlier result, whose files of the same digest are not fetched again.
+    What is there so far lies in a hidden folder beside it; the next fetch goes on there. Raises HairbakeError."""
     folder = Path(os.path.abspath(folder))
     check_result_folder(folder)
     try:

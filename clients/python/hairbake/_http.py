@@ -89,14 +89,16 @@ class Http:
     def __init__(self, url: str, token: str, ca_file: Optional[str], patience_s: float) -> None:
         self.url = url.rstrip("/")
         parts = urllib.parse.urlsplit(self.url)
-        if parts.scheme not in ("http", "https") or not parts.hostname or parts.username or parts.query or parts.fragment:
+        more = parts.username or parts.query or parts.fragment
+        if parts.scheme not in ("http", "https") or not parts.hostname or more:
             raise UsageError(f"server is {url}; allowed is http://HOST:PORT or https://HOST", "server")
         self._host, self._port, self._base = parts.hostname, parts.port, parts.path
         self._context = ssl.create_default_context(cafile=ca_file) if parts.scheme == "https" else None
         self._token, self._patience_s = token, patience_s
         local = self._host in ("localhost", "::1") or self._host.startswith("127.")
         if token and not self._context and not local:
-            print("hairbake: warning: the token goes over the network in the clear; https:// protects it", file=sys.stderr)
+            print("hairbake: warning: the token goes over the network in the clear; https:// protects it",
+                  file=sys.stderr)
 
     def patience(self) -> Patience:
         return Patience(self._patience_s)
@@ -104,8 +106,8 @@ class Http:
     def once(self, method: str, path: str, headers: Optional[Mapping[str, str]] = None, body: bytes = b"",
              source: Optional[Iterator[bytes]] = None, source_bytes: int = 0, sink: Optional[Sink] = None,
              most_bytes: int = 16 << 20) -> Answer:
-        """One attempt. `source` gives the body in pieces, `sink` takes that of a 2xx answer. Raises ConnectionLost (also
-        for a server that is busy), Unreachable, and Refused for an answer longer than `most_bytes`."""
+        """One attempt. `source` gives the body in pieces, `sink` takes that of a 2xx answer. Raises ConnectionLost
+        (also for a server that is busy), Unreachable, and Refused for an answer longer than `most_bytes`."""
         connection = self._connection()
         try:
             self._send(connection, method, path, headers or {}, body, source, source_bytes)
@@ -143,8 +145,8 @@ class Http:
             return http.client.HTTPSConnection(self._host, self._port, timeout=TIMEOUT_S, context=self._context)
         return http.client.HTTPConnection(self._host, self._port, timeout=TIMEOUT_S)
 
-    def _send(self, connection: http.client.HTTPConnection, method: str, path: str, headers: Mapping[str, str], body: bytes,
-              source: Optional[Iterator[bytes]], source_bytes: int) -> None:
+    def _send(self, connection: http.client.HTTPConnection, method: str, path: str, headers: Mapping[str, str],
+              body: bytes, source: Optional[Iterator[bytes]], source_bytes: int) -> None:
         connection.putrequest(method, self._base + path, skip_accept_encoding=True)
         for name, value in headers.items():
             connection.putheader(name, value)

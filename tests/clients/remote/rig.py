@@ -1,4 +1,4 @@
-"""What the tests of both remote clients need: a proxy that counts and cuts, a server that lies, a daemon that comes back."""
+"""What the tests of both clients need: a proxy that counts and cuts, a server that lies, a daemon that comes back."""
 import json
 import os
 import re
@@ -17,9 +17,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "server"))
 from harness import PATIENCE, PROGRAMS, Daemon, sha256  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[3]
-QUICK = [word for setting in ("transmittance.directions=16", "transmittance.voxels=32", "transmittance.reference_vertices=0",
-                              "irradiance.face_size=4", "irradiance.specular_maps=3") for word in ("--set", setting)
-         ] + ["--outputs", "npy"]
+SETTINGS = ("transmittance.directions=16", "transmittance.voxels=32", "transmittance.reference_vertices=0",
+            "irradiance.face_size=4", "irradiance.specular_maps=3")
+QUICK = [word for setting in SETTINGS for word in ("--set", setting)] + ["--outputs", "npy"]
 
 
 class LastingDaemon(Daemon):
@@ -34,7 +34,7 @@ class LastingDaemon(Daemon):
 
 class Proxy:
     """`with Proxy(daemon) as p:` forwards connections to the daemon and counts what it forwards. `cut_sent` and
-    `cut_received` end the connection after that many bytes of it, once; with `stall` it stays open and goes silent instead."""
+    `cut_received` end the connection after that many bytes of it, once; with `stall` it goes silent instead."""
 
     def __init__(self, daemon, cut_sent=None, cut_received=None, stall=False, tls=None, port=0):
         self.daemon, self.stall, self.tls = daemon, stall, tls
@@ -106,8 +106,8 @@ class Proxy:
 
 
 class Liar:
-    """A server that answers a done bake whose files are `files` (name to bytes), under `listed` names and digests in the
-    manifest; `endless` names a path whose body does not end."""
+    """A server that answers a done bake whose files are `files` (name to bytes), under `listed` names and digests in
+    the manifest; `endless` names a path whose body does not end."""
 
     def __init__(self, listed, files, endless="", manifest_tag=None):
         manifest = json.dumps({"id": "0" * 64, "files": listed}).encode()
@@ -159,7 +159,7 @@ class Liar:
 
 
 class TcpLiar:
-    """A server that answers every request with `head` and then `forever`, again and again, or closes when that is empty."""
+    """A server that answers every request with `head`, then `forever` again and again, or closes when it is empty."""
 
     def __init__(self, head, forever):
         class Handler(socketserver.BaseRequestHandler):
@@ -182,8 +182,9 @@ class TcpLiar:
 def tls_of_localhost(folder):
     """A server's TLS context and the file of the certificate that it shows, for 127.0.0.1."""
     key, certificate = folder / "key.pem", folder / "certificate.pem"
-    subprocess.run(["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-keyout", key, "-out", certificate, "-days", "1",
-                    "-subj", "/CN=127.0.0.1", "-addext", "subjectAltName=IP:127.0.0.1"], check=True, capture_output=True)
+    subprocess.run(["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-keyout", key, "-out", certificate,
+                    "-days", "1", "-subj", "/CN=127.0.0.1", "-addext", "subjectAltName=IP:127.0.0.1"], check=True,
+                   capture_output=True)
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
     context.load_cert_chain(certificate, key)
     return context, certificate
@@ -208,8 +209,9 @@ class Workshop:
         self.command = command
         self.folder = tempfile.TemporaryDirectory(prefix="hairbake-clients-")
         self.path = Path(self.folder.name)
-        self.environment = {**os.environ, "XDG_CACHE_HOME": str(self.path / "cache"), "PYTHONPATH": str(ROOT / "clients/python"),
-                            "PYTHONDONTWRITEBYTECODE": "1", "no_proxy": "*", "NO_PROXY": "*"}
+        self.environment = {**os.environ, "XDG_CACHE_HOME": str(self.path / "cache"),
+                            "PYTHONPATH": str(ROOT / "clients/python"), "PYTHONDONTWRITEBYTECODE": "1",
+                            "no_proxy": "*", "NO_PROXY": "*"}
         for name in ("HAIRBAKE_SERVER", "HAIRBAKE_TOKEN_FILE"):
             self.environment.pop(name, None)
 
@@ -219,8 +221,8 @@ class Workshop:
 
     def start(self, *words, url=None):
         server = ["--server", url] if url else []
-        return subprocess.Popen([*self.command, *map(str, words), *server], cwd=self.path, env=self.environment, text=True,
-                                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        return subprocess.Popen([*self.command, *map(str, words), *server], cwd=self.path, env=self.environment,
+                                text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
     def end(self, process):
         out, err = process.communicate(timeout=PATIENCE)

@@ -7,7 +7,8 @@ import socket
 import subprocess
 import unittest
 
-from rig import PROGRAMS, QUICK, LastingDaemon, Liar, Proxy, TcpLiar, Workshop, first_word, sha256, tls_of_localhost, until
+from rig import (PROGRAMS, QUICK, LastingDaemon, Liar, Proxy, TcpLiar, Workshop, first_word, sha256, tls_of_localhost,
+                 until)
 from harness import hair_bytes, hdr_bytes, quick_request, slow_request
 
 ENDED = "0" * 64  # the bake of a Liar
@@ -93,7 +94,8 @@ class Jobs:
 
     def test_json_lines_tell_everything(self):
         daemon = self.daemon()
-        done = self.run_ok("submit", "--hair", self.hair, *QUICK, "--fetch", "out", "--progress", "json", url=daemon.url)
+        done = self.run_ok("submit", "--hair", self.hair, *QUICK, "--fetch", "out", "--progress", "json",
+                           url=daemon.url)
         events = done.events
         self.assertEqual({event["event"] for event in events}, {"progress", "submitted", "done"})
         self.assertEqual((events[-1]["event"], events[-1]["folder"]), ("done", "out"))
@@ -139,7 +141,8 @@ class Jobs:
         bake = first_word(self.run_ok("submit", "--hair", self.hair, "--env", self.sky, *QUICK, "--fetch", "old",
                                       url=daemon.url).out)
         dusk = self.shop.write("dusk.hdr", hdr_bytes(red=200))
-        forecast = self.run_ok("rebake", "--env", dusk, "--bake", bake, "--dry-run", "--progress", "json", url=daemon.url).events
+        forecast = self.run_ok("rebake", "--env", dusk, "--bake", bake, "--dry-run", "--progress", "json",
+                               url=daemon.url).events
         self.assertEqual(forecast[-1]["reused_stages"], {"transmittance": 1, "irradiance": 0})
         self.assertEqual(forecast[-1]["computed_stages"], {"transmittance": 0, "irradiance": 1})
         done = self.run_ok("rebake", "--env", dusk, "--replaces", self.sky, "--fetch", "new", url=daemon.url)
@@ -154,7 +157,8 @@ class Jobs:
 
     def test_names(self):
         daemon = self.daemon()
-        stored = self.run_ok("upload", self.sky, "--as", "environment", "--name", "stage1/noon", "--note", "v1", url=daemon.url)
+        stored = self.run_ok("upload", self.sky, "--as", "environment", "--name", "stage1/noon", "--note", "v1",
+                             url=daemon.url)
         self.assertEqual(first_word(stored.out), f"sha256:{sha256(hdr_bytes())}")
         bake = first_word(self.run_ok("submit", "--hair", self.hair, "--env", "name:stage1/noon", *QUICK, "--wait",
                                       url=daemon.url).out)
@@ -211,7 +215,8 @@ class Refusals:
     def test_a_certificate_is_checked(self):
         context, certificate = tls_of_localhost(self.shop.path)
         with Proxy(self.daemon(), tls=context) as proxy:
-            self.run_ok("submit", "--hair", self.hair, *QUICK, "--fetch", "out", "--ca-file", certificate, url=proxy.url)
+            self.run_ok("submit", "--hair", self.hair, *QUICK, "--fetch", "out", "--ca-file", certificate,
+                        url=proxy.url)
             self.assertIn("certificate", self.run_failing(6, "status", url=proxy.url).err)
 
 
@@ -332,7 +337,8 @@ class Lies:
 
     def test_names_in_a_manifest_cannot_leave_the_folder(self):
         data, outside = b"evil", self.shop.path.parent / "hairbake-evil"
-        for name in ("../hairbake-evil", str(outside), "a/b", "..", ".", ".bashrc", "", "manifest.json", "a\\b", "a\nb", "a%2fb"):
+        for name in ("../hairbake-evil", str(outside), "a/b", "..", ".", ".bashrc", "", "manifest.json", "a\\b", "a\nb",
+                     "a%2fb"):
             with self.subTest(name):
                 entry = {"name": name, "sha256": sha256(data), "bytes": len(data)}
                 self.refuses([entry], {name: data, name.rsplit("/", 1)[-1]: data})
