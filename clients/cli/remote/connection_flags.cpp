@@ -99,4 +99,10 @@ void check_ids(const std::vector<std::string>& ids, const char* field) {
         if (!is_id(id)) throw Error(ErrorKind::usage, plain(id) + " is not an id as the service gives them", field);
 }
 
+void check_ids_or_batch(const std::vector<std::string>& ids, const std::string& batch, const std::string& command) {
+    check_ids(ids, "id");
+    if (!batch.empty()) check_ids({batch}, "batch");
+    if (ids.empty() == batch.empty()) throw Error(ErrorKind::usage, command + " needs ids of bakes, or --batch", "id");
+}
+
 }  // namespace hairbake

@@ -36,4 +36,7 @@ void run_phase(const ConnectionFlags& flags, const ServerOptions& options, const
 /// Throws Error(usage) unless all are ids.
 void check_ids(const std::vector<std::string>& ids, const char* field);
 
+/// The same for ids, or one batch's, of which exactly one must be given to `command`.
+void check_ids_or_batch(const std::vector<std::string>& ids, const std::string& batch, const std::string& command);
+
 }  // namespace hairbake

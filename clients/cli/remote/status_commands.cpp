@@ -82,10 +82,7 @@ void cancel(Server& server, const std::string& id) {
 }
 
 void run_cancel(const Options& options) {
-    check_ids(options.ids, "id");
-    if (!options.batch.empty()) check_ids({options.batch}, "batch");
-    if (options.ids.empty() == options.batch.empty())
-        throw Error(ErrorKind::usage, "cancel needs ids of bakes, or --batch", "id");
+    check_ids_or_batch(options.ids, options.batch, "cancel");
     std::vector<std::string> ids = options.ids;
     run_phase(options.connection, server_options(options.connection), {}, [&](Server& server) {
         for (const char* state : {"queued", "running"})

@@ -16,10 +16,7 @@ struct WaitOptions {
 };
 
 void run_wait(const WaitOptions& options) {
-    check_ids(options.ids, "id");
-    if (!options.batch.empty()) check_ids({options.batch}, "batch");
-    if (options.ids.empty() == options.batch.empty())
-        throw Error(ErrorKind::usage, "wait needs ids of bakes, or --batch", "id");
+    check_ids_or_batch(options.ids, options.batch, "wait");
     Awaited awaited;
     awaited.which = options.batch.empty() ? "" : "--batch " + options.batch;
     for (const std::string& id : options.ids) awaited.which += (awaited.which.empty() ? "" : " ") + id;
