@@ -20,11 +20,18 @@ namespace {
 void expect(int ok) {
     if (ok != 1) throw Error(ErrorKind::internal, "SHA-256 is not available in this OpenSSL");
 }
+
+// Looked up once: OpenSSL searches its providers under a lock each time, which costs more than a short text's digest.
+// Never freed, since OpenSSL may be gone before our statics are.
+const EVP_MD* sha256() {
+    static const EVP_MD* const type = EVP_MD_fetch(nullptr, "SHA256", nullptr);
+    return type;
+}
 }  // namespace
 
 Digest::Digest() : state_(std::make_unique<State>()) {
     if (!state_->context) throw Error(ErrorKind::out_of_resources, "no memory for a SHA-256 context");
-    expect(EVP_DigestInit_ex(state_->context.get(), EVP_sha256(), nullptr));
+    expect(sha256() && EVP_DigestInit_ex(state_->context.get(), sha256(), nullptr));
 }
 Digest::~Digest() = default;
 Digest::Digest(Digest&&) noexcept = default;
@@ -41,6 +48,7 @@ std::string Digest::hex() {
     std::array<unsigned char, 32> value{};
     expect(EVP_DigestFinal_ex(state_->context.get(), value.data(), nullptr));
     std::string text;
+    text.reserve(2 * value.size());
     for (const unsigned char byte : value) {
         constexpr char digits[] = "0123456789abcdef";
         text += digits[byte >> 4];

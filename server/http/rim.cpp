@@ -9,14 +9,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <condition_variable>
-#include <deque>
 #include <exception>
 #include <limits>
-#include <mutex>
-#include <thread>
 
 #include "core/base/error.h"
+#include "server/http/bounded_pool.h"
 #include "server/http/problem.h"
 #include "server/http/target.h"
 #include "server/jobs/service.h"
@@ -25,67 +22,54 @@ namespace hairbake {
 namespace {
 
 constexpr int read_timeout_s = 30, write_timeout_s = 60, first_byte_timeout_s = 10;
-constexpr std::size_t most_refusals = 1024;
 const std::string any_path = "/";  // the library routes nothing: every request is made to look for this
 
-/// On the thread that answers what the queue has no room for.
-thread_local bool refusing = false;
 /// The current connection's request body was not read to its end.
 thread_local bool body_left = false;
 
-/// A fixed number of threads and a bounded queue. What finds the queue full is answered 503 by one more thread.
-class BoundedPool : public httplib::TaskQueue {
+/// Connections that wait for a thread, as the library wants them.
+class WaitingConnections : public httplib::TaskQueue {
 public:
-    BoundedPool(int threads, int waiting) : waiting_(static_cast<std::size_t>(waiting)) {
-        for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { work(accepted_); });
-        threads_.emplace_back([this] {
-            refusing = true;
-            work(refused_);
-        });
-    }
-
-    bool enqueue(std::function<void()> job) override {
-        const std::lock_guard lock(mutex_);
-        Line& line = accepted_.jobs.size() < waiting_ ? accepted_ : refused_;
-        if (&line == &refused_ && line.jobs.size() >= most_refusals) return false;  // the library closes the connection
-        line.jobs.push_back(std::move(job));
-        line.grown.notify_one();
-        return true;
-    }
-
-    void shutdown() override {
-        {
-            const std::lock_guard lock(mutex_);
-            ending_ = true;
-        }
-        accepted_.grown.notify_all();
-        refused_.grown.notify_all();
-        threads_.clear();  // joins
-    }
+    WaitingConnections(int threads, int waiting) : pool_(threads, waiting) {}
+    bool enqueue(std::function<void()> job) override { return pool_.enqueue(std::move(job)); }
+    void shutdown() override { pool_.shutdown(); }
 
 private:
-    struct Line {
-        std::deque<std::function<void()>> jobs;
-        std::condition_variable grown;
-    };
+    BoundedPool pool_;
+};
 
-    void work(Line& line) {
-        for (;;) {
-            std::unique_lock lock(mutex_);
-            line.grown.wait(lock, [&] { return ending_ || !line.jobs.empty(); });
-            if (line.jobs.empty()) return;
-            const std::function<void()> job = std::move(line.jobs.front());
-            line.jobs.pop_front();
-            lock.unlock();
-            job();
-        }
+/// Holds back what is written until it is worth a packet or flush() is called: the library writes head and body of a
+/// reply one by one.
+class GatheredStream : public httplib::Stream {
+public:
+    explicit GatheredStream(httplib::Stream& stream) : stream_(stream) {}
+
+    bool is_readable() const override { return stream_.is_readable(); }
+    bool is_writable() const override { return stream_.is_writable(); }
+    ssize_t read(char* data, std::size_t size) override { return flush() ? stream_.read(data, size) : -1; }
+    ssize_t write(const char* data, std::size_t size) override {
+        if (held_.size() + size > most_held) return flush() ? stream_.write(data, size) : -1;
+        held_.append(data, size);
+        return static_cast<ssize_t>(size);
     }
+    bool flush() {
+        std::size_t sent = 0;
+        while (sent < held_.size()) {
+            const ssize_t count = stream_.write(held_.data() + sent, held_.size() - sent);
+            if (count <= 0) return false;
+            sent += static_cast<std::size_t>(count);
+        }
+        held_.clear();
+        return true;
+    }
+    void get_remote_ip_and_port(std::string& ip, int& port) const override { stream_.get_remote_ip_and_port(ip, port); }
+    void get_local_ip_and_port(std::string& ip, int& port) const override { stream_.get_local_ip_and_port(ip, port); }
+    socket_t socket() const override { return stream_.socket(); }
 
-    const std::size_t waiting_;
-    std::mutex mutex_;
-    bool ending_ = false;
-    Line accepted_, refused_;
-    std::vector<std::jthread> threads_;
+private:
+    static constexpr std::size_t most_held = 16384;
+    httplib::Stream& stream_;
+    std::string held_;
 };
 
 void refuse_connection(socket_t connection) {
@@ -228,7 +212,7 @@ void remove_dead_socket(const std::string& path) {
 class Rim::Listener : public httplib::Server {
 public:
     Listener(const RimSettings& settings, Rim::Handler handler) : handler_(std::move(handler)), accel_(settings.accel) {
-        new_task_queue = [settings] { return new BoundedPool(settings.threads, settings.waiting); };
+        new_task_queue = [settings] { return new WaitingConnections(settings.threads, settings.waiting); };
         set_keep_alive_max_count(1);
         set_keep_alive_timeout(first_byte_timeout_s);
         set_read_timeout(read_timeout_s, 0);
@@ -308,17 +292,20 @@ private:
     bool process_and_close_socket(socket_t connection) override {
         bool served = false;
         body_left = false;
-        if (refusing) {
+        if (BoundedPool::is_refusing()) {
             refuse_connection(connection);
             body_left = true;
         } else {
             served = httplib::detail::process_server_socket(
                 svr_sock_, connection, 1, first_byte_timeout_s, read_timeout_s, 0, write_timeout_s, 0,
                 [&](httplib::Stream& stream, bool close, bool& closed) {
-                    return process_request(stream, "", 0, "", 0, close, closed, [](httplib::Request& request) {
-                        request.path = any_path;  // ours are in the target
-                        request.ranges.clear();   // likewise
-                    });
+                    GatheredStream gathered(stream);
+                    const bool done =
+                        process_request(gathered, "", 0, "", 0, close, closed, [](httplib::Request& request) {
+                            request.path = any_path;  // ours are in the target
+                            request.ranges.clear();   // likewise
+                        });
+                    return gathered.flush() && done;
                 });
         }
         if (body_left) linger(connection);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <string_view>
 
 #include "server/http/problem.h"
 #include "server/jobs/service.h"
@@ -12,19 +13,19 @@ namespace {
 using Parameters = std::map<std::string, std::string>;
 
 /// What the pattern's {…} stand for, when it fits.
-std::optional<Parameters> match(const std::string& pattern, const std::vector<std::string>& path) {
+std::optional<Parameters> match(std::string_view pattern, const std::vector<std::string>& path) {
     Parameters parameters;
     std::size_t segment = 0;
     for (std::size_t begin = 1; begin < pattern.size();) {
         const std::size_t end = std::min(pattern.find('/', begin), pattern.size());
-        const std::string part = pattern.substr(begin, end - begin);
+        const std::string_view part = pattern.substr(begin, end - begin);
         if (segment == path.size()) return std::nullopt;
         if (part.ends_with("...}")) {
             std::string rest;
             for (; segment < path.size(); ++segment) rest += (rest.empty() ? "" : "/") + path[segment];
-            parameters[part.substr(1, part.size() - 5)] = rest;
+            parameters[std::string(part.substr(1, part.size() - 5))] = rest;
         } else if (part.starts_with("{")) {
-            parameters[part.substr(1, part.size() - 2)] = path[segment++];
+            parameters[std::string(part.substr(1, part.size() - 2))] = path[segment++];
         } else if (part != path[segment++]) {
             return std::nullopt;
         }
