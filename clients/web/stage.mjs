@@ -15,11 +15,13 @@ const vendor = {
     'uplot.js': 'uplot/dist/uPlot.esm.js',
     'uplot.css': 'uplot/dist/uPlot.min.css',
     'pico.css': '@picocss/pico/css/pico.min.css',
+    // SHA-256 in pieces, and what it imports by these names
+    ...Object.fromEntries(['sha2', '_md', '_u64', 'utils'].map(n => [`hashes/${n}.js`, `@noble/hashes/${n}.js`])),
 };
 
 function stage(folder) {
     rmSync(folder, { recursive: true, force: true });
-    mkdirSync(join(folder, 'vendor'), { recursive: true });
+    mkdirSync(join(folder, 'vendor/hashes'), { recursive: true });
     for (const name of readdirSync(source))
         if (!not_served.has(name)) cpSync(join(source, name), join(folder, name), { recursive: true });
     for (const [name, from] of Object.entries(vendor))

@@ -1,6 +1,5 @@
 // The page's pure functions, in node.
 import assert from 'node:assert/strict';
-import { createHash } from 'node:crypto';
 import { readFileSync, readdirSync } from 'node:fs';
 import { test } from 'node:test';
 import { build_request, differences, first_values, merged, with_value } from '../../../clients/web/app/bake/request.js';
@@ -17,7 +16,6 @@ import {
 import { half_values } from '../../../clients/web/app/result/half.js';
 import { srgb_byte } from '../../../clients/web/app/result/map_set.js';
 import { read_route } from '../../../clients/web/app/routes.js';
-import { Sha256 } from '../../../clients/web/app/uploads/sha256.js';
 import { from_half } from '../../../clients/web/viewer/half.js';
 import { bytes_words, name_from_file, number_words, seconds_words } from '../../../clients/web/app/words.js';
 
@@ -97,19 +95,6 @@ test('sRGB bytes are those of IEC 61966-2-1', () => {
         [0.001, 3],
     ])
         assert.equal(srgb_byte(value), byte);
-});
-
-test('SHA-256 in pieces is that of node, whatever the pieces', () => {
-    const data = new Uint8Array(1000).map((_, i) => (i * 7919) >> 3);
-    for (const size of [0, 1, 55, 56, 63, 64, 65, 119, 120, 128, 1000]) {
-        const whole = data.subarray(0, size);
-        const expected = createHash('sha256').update(whole).digest('hex');
-        for (const piece of [1, 7, 64, 100, 1000]) {
-            const sha = new Sha256();
-            for (let at = 0; at < size; at += piece) sha.add(whole.subarray(at, at + piece));
-            assert.equal(sha.hex(), expected, `${size} bytes by ${piece}`);
-        }
-    }
 });
 
 test('every field of the schema has a help text, and what is a number has a range', () => {
