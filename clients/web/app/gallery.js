@@ -20,7 +20,8 @@ export function use_inputs(kind) {
     return { items: list.items, names, files, problem: list.problem ?? named.problem, reload };
 }
 
-function NameForm({ entry, suggestion, on_named }) {
+/** Points a name at a file: entry is { kind, id } with the file's digest as id. */
+export function NameForm({ entry, suggestion, on_named }) {
     const { api, announce } = use_app();
     const [problem, set_problem] = useState(null);
     const save = async event => {

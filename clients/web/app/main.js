@@ -10,6 +10,7 @@ import { Uploads } from './uploads/uploads.js';
 const sections = [
     ['environments', 'Environments'],
     ['models', 'Models'],
+    ['meshes', 'Meshes'],
     ['bake', 'New bake'],
     ['bakes', 'Bakes'],
     ['rebake', 'Re-bake'],

@@ -20,6 +20,7 @@ export function read_route(hash) {
 const pages = {
     environments: { load: () => import('./pages/environments_page.js'), title: () => 'Environments' },
     models: { load: () => import('./pages/models_page.js'), title: () => 'Hair models' },
+    meshes: { load: () => import('./pages/meshes_page.js'), title: () => 'Meshes' },
     names: { load: () => import('./pages/name_page.js'), title: path => path.slice(2).join('/') || 'Names' },
     bake: { load: () => import('./pages/bake_page.js'), title: () => 'New bake' },
     bakes: {

@@ -2,7 +2,7 @@
 // texts, accessibility. The real daemon, in Chromium.
 import assert from 'node:assert/strict';
 import { createHash } from 'node:crypto';
-import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -214,6 +214,36 @@ test('a name gets a new version, shows what followed the old one, and that is ba
     });
 });
 
+test('a mesh is sent, gets a name and a new version, and what followed the old one is baked again', async () => {
+    const head = join(sample, 'head.obj');
+    const other = join(sample, 'other.obj');
+    writeFileSync(other, `${readFileSync(head, 'utf8')}\n# the same head with another digest\n`);
+    await with_page(daemon.address, async page => {
+        await page.goto(`${daemon.address}/#/meshes`);
+        await page.getByText('No mesh has a name yet.').waitFor();
+        const send_and_name = async (file, path) => {
+            await page.locator('.drop-zone input[type=file]').setInputFiles(file);
+            await page.getByRole('textbox', { name: 'Name' }).fill(path);
+            await page.getByRole('button', { name: 'Put the name here' }).click();
+        };
+        await send_and_name(head, 'heads/round');
+        await page.getByRole('link', { name: 'heads/round' }).click();
+        await page.getByText('0 bakes asked for this name').waitFor();
+        const { request } = await daemon.json(`/v1/bakes/${bake}`);
+        const { id } = await daemon.post('/v1/bakes', { ...request, occluder: 'name:heads/round' });
+        await daemon.finished(id);
+        await page.goto(`${daemon.address}/#/meshes`);
+        await send_and_name(other, 'heads/round');
+        await page.getByRole('cell', { name: '2', exact: true }).waitFor();
+        await page.getByRole('link', { name: 'heads/round' }).click();
+        await page.getByText('1 bake asked for this name, 1 of them for an older version.').waitFor();
+        await page.getByRole('button', { name: 'Bake 1 bake with version 2' }).click();
+        await page.getByRole('heading', { name: 'Bakes' }).waitFor();
+        const { bakes } = await daemon.json('/v1/bakes?name=heads%2Fround');
+        assert.deepEqual(bakes.map(one => one.names.occluder.version).sort(), [1, 2]);
+    });
+});
+
 test('a bake that fails says why, and another can be cancelled from the queue', async () => {
     const dark = await daemon.add('environment', join(sample, 'overcast.hdr'));
     // The model has a width, so that strand.width is none; a mesh that is no OBJ fails the worker.
@@ -319,11 +349,13 @@ async function check_with_axe(page, name) {
 const pages = [
     ['environments', '', '.card'],
     ['models', '#/models', '.card'],
+    ['meshes', '#/meshes', 'tbody tr'],
     ['bake form', `#/bake`, 'form button[type=submit]'],
     ['bakes', '#/bakes', 'tbody tr'],
     ['result', () => `#/bakes/${bake}`, '.histogram', '.chart canvas'],
     ['re-bake', () => `#/rebake?bakes=${bake}`, '.choice'],
     ['name', '#/names/environment/stage/sunset', '#followers'],
+    ['name of a mesh', '#/names/mesh/heads/round', '#followers'],
     ['viewer', () => `#/view/${bake}`, 'canvas'],
     ['no page', '#/nowhere', 'h1'],
 ];

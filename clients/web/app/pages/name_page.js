@@ -6,6 +6,7 @@ import { name_address, use_inputs } from '../gallery.js';
 import { use_app, use_json, use_list } from '../hooks.js';
 import { label_of } from '../input_facts.js';
 import { Heads, Loading, ProblemNote } from '../parts.js';
+import { file_names } from '../uploads/uploads.js';
 import { count_words, time_words } from '../words.js';
 
 function Versions({ versions, inputs }) {
@@ -17,6 +18,14 @@ function Versions({ versions, inputs }) {
         )}</tbody>
     </table></div>`;
 }
+
+/** The fields of a request that can ask for a name of this kind. */
+const fields = { model: ['hair'], environment: ['environment'], mesh: ['occluder', 'receiver'] };
+
+/** Those of them by which the bake asked for the name. */
+const asked_by = (bake, { kind, path }) => fields[kind].filter(field => bake.names[field]?.path === path);
+
+const no_inputs = { items: [], names: {}, files: {} };
 
 function NewVersion({ kind, name, inputs, on_change }) {
     const { api, announce } = use_app();
@@ -48,15 +57,16 @@ function NewVersion({ kind, name, inputs, on_change }) {
     </form>`;
 }
 
-/** Models are baked again one by one: the service's re-bake changes environments. */
-function RebakeModels({ name, bakes }) {
+/** Models and meshes are baked again one by one: the service's re-bake changes environments. */
+function BakeAgain({ name, bakes }) {
     const { api, announce } = use_app();
     const [problem, set_problem] = useState(null);
     const again = async () => {
         try {
-            for (const { id } of bakes) {
-                const { request } = await api.json(`/v1/bakes/${id}`);
-                await api.post('/v1/bakes', { ...request, hair: `name:${name.path}` });
+            for (const bake of bakes) {
+                const { request } = await api.json(`/v1/bakes/${bake.id}`);
+                const newest = asked_by(bake, name).map(field => [field, `name:${name.path}`]);
+                await api.post('/v1/bakes', { ...request, ...Object.fromEntries(newest) });
             }
             announce(`${count_words(bakes.length, 'bake')} asked for.`);
             location.hash = '#/bakes';
@@ -72,9 +82,8 @@ function Followers({ kind, name }) {
     const models = use_inputs('model');
     const environments = use_inputs('environment');
     const { items, problem } = use_list(`/v1/bakes?name=${encodeURIComponent(name.path)}`, 'bakes');
-    const field = kind === 'model' ? 'hair' : 'environment';
-    const bakes = useMemo(() => (items ?? []).filter(bake => bake.names[field]?.path === name.path), [items]);
-    const old = bakes.filter(bake => bake.names[field].version < name.version);
+    const bakes = useMemo(() => (items ?? []).filter(bake => asked_by(bake, name).length > 0), [items]);
+    const old = bakes.filter(bake => asked_by(bake, name).some(field => bake.names[field].version < name.version));
     if (problem) return html`<${ProblemNote} problem=${problem} />`;
     if (!items) return html`<${Loading} what="the bakes" />`;
     const outdated = old.filter(bake => bake.model);
@@ -87,21 +96,24 @@ function Followers({ kind, name }) {
             html`<${Rebake} label="Bake with the newest version:"
             request=${{ environment: `name:${name.path}`, bakes: outdated.map(({ id }) => id) }} />`
         }
-        ${kind === 'model' && old.length > 0 && html`<${RebakeModels} name=${name} bakes=${old} />`}
+        ${kind !== 'environment' && old.length > 0 && html`<${BakeAgain} name=${name} bakes=${old} />`}
         ${bakes.length > 0 && html`<${BakeTable} bakes=${bakes} models=${models} environments=${environments} />`}
     </div>`;
 }
 
-function OneName({ kind, path }) {
-    const inputs = use_inputs(kind);
+function OneName({ kind, path, inputs }) {
     const { value: name, problem, reload } = use_json(name_address(kind, path));
     if (!name) return problem ? html`<${ProblemNote} problem=${problem} />` : html`<${Loading} what="the name" />`;
-    const ask = kind === 'model' ? 'hair' : 'environment';
     return html`<div>
-        <p>A request asks for it as <code>"${ask}": "name:${name.path}"</code>,
+        <p>A request asks for it as <code>"${fields[kind][0]}": "name:${name.path}"</code>,
             or for one version as <code>name:${name.path}@${name.version}</code>.</p>
         <h2>New version</h2>
-        <${NewVersion} key=${name.version} kind=${kind} name=${name} inputs=${inputs} on_change=${reload} />
+        ${
+            kind === 'mesh'
+                ? html`<p><a href="#/meshes">Send the new mesh</a> and give it this name.</p>`
+                : html`<${NewVersion} key=${name.version} kind=${kind} name=${name} inputs=${inputs}
+                    on_change=${reload} />`
+        }
         <h2>Versions</h2>
         <${Versions} versions=${name.versions} inputs=${inputs} />
         <h2>What follows it</h2>
@@ -109,10 +121,16 @@ function OneName({ kind, path }) {
     </div>`;
 }
 
+function NameOfInput({ kind, path }) {
+    return html`<${OneName} kind=${kind} path=${path} inputs=${use_inputs(kind)} />`;
+}
+
 export default function NamePage({ path }) {
     const [, kind, ...rest] = path;
-    if ((kind === 'model' || kind === 'environment') && rest.length > 0)
-        return html`<${OneName} kind=${kind} path=${rest.join('/')} />`;
-    return html`<p>Names are listed with the <a href="#/environments">environments</a> and <a
-        href="#/models">models</a> that they point at.</p>`;
+    const name = rest.join('/');
+    if (name && kind === 'mesh')
+        return html`<${OneName} kind="mesh" path=${name} inputs=${{ ...no_inputs, files: file_names() }} />`;
+    if (name && Object.hasOwn(fields, kind)) return html`<${NameOfInput} kind=${kind} path=${name} />`;
+    return html`<p>Names are listed with the <a href="#/environments">environments</a>, <a
+        href="#/models">models</a> and <a href="#/meshes">meshes</a> that they point at.</p>`;
 }
