@@ -1,4 +1,6 @@
 """What must survive: kills, restarts, rotten bytes, full stores, dead workers."""
+import base64
+import contextlib
 import http.client
 import os
 import random
@@ -151,6 +153,31 @@ class Restarts(unittest.TestCase):
             self.assertIn("spoiled", view["error"]["message"])
             self.assertEqual(d.put(data), digest)  # sent again, it is taken again
             self.assertEqual(d.wait(d.ask("POST", "/v1/bakes", quick_request(digest)).json["id"])["state"], "done")
+
+    def test_a_store_of_the_version_before_is_taken_over_and_one_of_a_later_version_is_not(self):
+        with Daemon() as d:
+            bake = d.ask("POST", "/v1/bakes", quick_request(d.put(hair_bytes()))).json["id"]
+            self.assertEqual(d.wait(bake)["state"], "done")
+            d.stop()
+            # Version 1 did not know who began an upload.
+            self.alter(d, "ALTER TABLE uploads DROP COLUMN token; PRAGMA user_version = 1")
+            d.start()
+            self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}").json["state"], "done")
+            reply = d.ask("POST", "/v1/uploads", headers={
+                "Tus-Resumable": "1.0.0", "Upload-Length": "9",
+                "Upload-Metadata": "sha256 " + base64.b64encode(sha256(b"some hair").encode()).decode()})
+            self.assertEqual(reply.status, 201, reply.body)
+            d.stop()
+            self.alter(d, "PRAGMA user_version = 1000")
+            self.assertRaises(AssertionError, d.start)
+            d.process.wait(PATIENCE)
+            d.process.stdout.close()
+            self.assertIn("its version is 1000", (d.path / "log").read_text())
+
+    @staticmethod
+    def alter(daemon, statements):
+        with contextlib.closing(sqlite3.connect(daemon.path / "store/hairbake.db")) as database:
+            database.executescript(statements)
 
     def test_a_broken_database_stops_the_start_and_says_what_to_do(self):
         with Daemon() as d:

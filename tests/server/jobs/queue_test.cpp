@@ -147,8 +147,8 @@ TEST_F(QueueTest, WhatEndedLongAgoAndWithoutAResultIsForgotten) {
     EXPECT_EQ(count("bakes"), 2);
     EXPECT_EQ(count("batches"), 1);  // of the other, no bake is left
     EXPECT_EQ(count("batch_bakes"), 2);
-    EXPECT_EQ(stage_state("I1"), "queued");  // "live" needs it
-    EXPECT_EQ(count("stages"), 3);           // not T1
+    EXPECT_EQ(stage_state("I1"), "queued");      // "live" needs it
+    EXPECT_EQ(count("stages"), 3);               // not T1
     queue.submit({bake("failed", "T1", "I1")});  // it is taken as if it had never been
     EXPECT_EQ(bake_state("failed"), "queued");
 }
