@@ -39,6 +39,7 @@ if ! buildah inspect --type image "$base" >/dev/null 2>&1; then
     buildah commit -q --rm "$container" "$base"
     rm "$work/base.tar"
 fi
+./dev build page # with the host's node and npm, so that the build inside needs none
 for target in nginx hairbaked; do
     say "building the image $target"
     buildah bud -q --isolation chroot --pull-never --format docker --layers --target "$target" \
@@ -83,6 +84,8 @@ address=http://127.0.0.1:$port
 ask() { curl -sSf -H "Authorization: Bearer $token" "$@"; }
 for _ in {1..100}; do ! ask -o /dev/null "$address/readyz" 2>/dev/null || break && sleep 0.2; done
 ask -o /dev/null "$address/readyz" || die "the service does not answer: $(podman logs hairbake-check-daemon hairbake-check-nginx 2>&1)"
+
+ask "$address/" | grep -q '<title>' || die "the web page is not served"
 
 say "baking the sample"
 inside -v "$work/sample:/sample" localhost/hairbake-hairbaked hairbake sample /sample/all >/dev/null
