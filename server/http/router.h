@@ -26,7 +26,8 @@ class Router {
 public:
     Router(std::vector<Route> routes, Access& access) : routes_(std::move(routes)), access_(access) {}
 
-    /// Access, the body's framing, limit and type, handler; 404, 405 with Allow, OPTIONS; every failure as problem+json.
+    /// Access, the body's framing, limit and type, handler; 404, 405 with Allow, OPTIONS; every failure as
+    /// problem+json.
     HttpReply answer(HttpRequest& request) const;
 
     const std::vector<Route>& routes() const { return routes_; }

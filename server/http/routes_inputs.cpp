@@ -56,8 +56,10 @@ HttpReply add_input(Service& service, HttpRequest& request, const std::string& k
     } else if (type.starts_with("application/octet-stream")) {
         digest = receive_blob(service, request, "").first;
     } else {
-        return problem(415, "unsupported", "Content-Type is missing; allowed is application/json with a digest, or application/octet-stream",
-                       "Content-Type");
+        return problem(
+            415, "unsupported",
+            "Content-Type is missing; allowed is application/json with a digest, or application/octet-stream",
+            "Content-Type");
     }
     const Catalog::Added added = service.catalog().add(kind, digest);
     return json_reply(added.known ? 200 : 201, added.answer).with("Location", "/v1/" + kind + "s/" + digest);
@@ -99,7 +101,10 @@ HttpReply list_names(Service& service, HttpRequest& request) {
 /// The routes of models or of environments.
 void add_catalog(std::vector<Route>& routes, Service& service, const std::string& kind) {
     const std::string base = "/v1/" + kind + "s", one = base + "/{sha256}";
-    routes.push_back({"POST", base, Scope::upload, service.settings().blob_bytes,
+    routes.push_back({"POST",
+                      base,
+                      Scope::upload,
+                      service.settings().blob_bytes,
                       [&service, kind](HttpRequest& r) { return add_input(service, r, kind); },
                       {"application/json", "application/octet-stream"}});
     routes.push_back({"GET", base, Scope::read, 0, [&service, kind](HttpRequest& r) {

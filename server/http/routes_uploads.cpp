@@ -72,7 +72,7 @@ HttpReply create(Service& service, HttpRequest& request) {
     const std::uint64_t bytes = length_header(request, "Upload-Length");
     service.receive(bytes);  // whether there is room
     const std::string metadata = request.header("Upload-Metadata").value_or("");
-    const UploadState state = 
+    const UploadState state =
         service.uploads().create(bytes, metadata_value(metadata, "sha256"), metadata, request.caller);
     return tus_reply(201)
         .with("Location", "/v1/uploads/" + state.id)
@@ -117,7 +117,11 @@ std::vector<Route> upload_routes(Service& service) {
         {"OPTIONS", base, Scope::open, 0, [&service](HttpRequest&) { return options(service); }},
         {"POST", base, Scope::upload, 0, tus(service, create)},
         {"HEAD", one, Scope::upload, 0, tus(service, look)},
-        {"PATCH", one, Scope::upload, service.settings().blob_bytes, tus(service, append),
+        {"PATCH",
+         one,
+         Scope::upload,
+         service.settings().blob_bytes,
+         tus(service, append),
          {"application/offset+octet-stream"}},
         {"DELETE", one, Scope::upload, 0,
          tus(service,

@@ -74,11 +74,11 @@ void Uploads::expire() {
 /// Who sends at once may get a few more than allowed: it is no exact limit.
 void Uploads::check_count(const std::string& token) {
     std::int64_t open = 0;
-    database_.read([&](Sql& sql) {
-        open = sql.rows("SELECT count(*) FROM uploads WHERE token = ?", {token}).at(0).integer(0);
-    });
+    database_.read(
+        [&](Sql& sql) { open = sql.rows("SELECT count(*) FROM uploads WHERE token = ?", {token}).at(0).integer(0); });
     if (open >= limits_.most_open)
-        throw Refusal(Refused::too_many, "there are " + std::to_string(open) + " unfinished uploads of this token; allowed are " +
+        throw Refusal(Refused::too_many, "there are " + std::to_string(open) +
+                                             " unfinished uploads of this token; allowed are " +
                                              std::to_string(limits_.most_open) + ": finish some or delete them");
 }
 

@@ -80,8 +80,8 @@ public:
         const int found = database.execAndGet("PRAGMA user_version").getInt();
         if (found == schema_version) return;
         if (found < 0 || found > schema_version)
-            throw Error(ErrorKind::bad_input, "its version is " + std::to_string(found) + "; this program reads up to " +
-                                                  std::to_string(schema_version));
+            throw Error(ErrorKind::bad_input, "its version is " + std::to_string(found) +
+                                                  "; this program reads up to " + std::to_string(schema_version));
         SQLite::Transaction transaction(database);
         for (int from = found; from < schema_version; ++from) database.exec(schema_statements(from));
         database.exec("PRAGMA user_version = " + std::to_string(schema_version));
