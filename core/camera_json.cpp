@@ -23,7 +23,7 @@ Json read_object(const std::filesystem::path& file) {
     std::string text(65536, '\0');
     stream.read(text.data(), static_cast<std::streamsize>(text.size()));
     text.resize(static_cast<std::size_t>(stream.gcount()));
-    const Json object = Json::parse(text, nullptr, false);
+    Json object = Json::parse(text, nullptr, false);
     if (!object.is_object()) throw Error(ErrorKind::bad_input, file.string() + " is no JSON object of at most 64 KiB");
     return object;
 }

@@ -144,7 +144,7 @@ Field choice(std::string path, Names<Enum> names, At at) {
             }};
 }
 
-Field opacity(std::string path) {
+Field opacity(const std::string& path) {
     return {
         path,
         [](const BakeRequest& r) { return r.strand.opacity_from_file ? Json("from_file") : Json(r.strand.opacity); },
@@ -172,7 +172,7 @@ Json light_to_json(const DirectionalLight& light) {
     return {{"direction", list(light.direction)}, {"irradiance", list(light.irradiance)}};
 }
 
-Field lights(std::string path) {
+Field lights(const std::string& path) {
     return {path,
             [](const BakeRequest& r) {
                 Json list = Json::array();
@@ -191,7 +191,7 @@ Field lights(std::string path) {
 // ---- the request, field by field -----------------------------------------------------------------------------------
 
 #define AT(member) \
-    [](auto& r) -> auto& { return r.member; }
+    [](auto& r) -> auto& { return r.member; }  // NOLINT(bugprone-macro-parentheses): a member cannot stand in them
 
 std::vector<Field> make_fields() {
     using T = TransmittanceMethod;

@@ -32,7 +32,7 @@ Json read_manifest(const fs::path& file) {
     stream.read(text.data(), static_cast<std::streamsize>(text.size()));
     text.resize(static_cast<std::size_t>(stream.gcount()));
     if (text.size() > most) refuse(file, "is longer than a manifest may be (16 MiB)");
-    const Json manifest = Json::parse(text, nullptr, false);
+    Json manifest = Json::parse(text, nullptr, false);
     if (!manifest.is_object() || manifest.value("format", Json()) != "hairbake result")
         refuse(file, "is not a manifest of hairbake");
     return manifest;

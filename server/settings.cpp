@@ -155,8 +155,7 @@ Settings read_tables(const toml::table& file, const fs::path& base) {
 /// The page as `./dev build` or an installation puts it; empty when there is none.
 fs::path page_beside(const fs::path& programs) {
     for (const char* place : {"../web", "../share/hairbake/web"})
-        if (const fs::path folder = (programs / place).lexically_normal(); fs::exists(folder / "index.html"))
-            return folder;
+        if (fs::path folder = (programs / place).lexically_normal(); fs::exists(folder / "index.html")) return folder;
     return {};
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <mutex>
 
@@ -66,7 +67,7 @@ public:
 protected:
     void show(const Reading& reading) override {
         constexpr int width = 32;
-        const int filled = static_cast<int>(reading.fraction * width + 0.5);
+        const auto filled = static_cast<int>(std::lround(reading.fraction * width));
         std::string bar(static_cast<std::size_t>(filled), '#');
         bar.resize(width, '.');
         std::string left;

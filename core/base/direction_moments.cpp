@@ -59,7 +59,7 @@ DirectionalSums::DirectionalSums(std::size_t points, std::span<const Vec3d> dire
 
 DirectionalMeans DirectionalSums::means() const {
     const std::size_t moments = moments_.count(), points = sums_.size() / moments;
-    const std::size_t coefficients = static_cast<std::size_t>(sh_bands_ * sh_bands_);
+    const auto bands = static_cast<std::size_t>(sh_bands_), coefficients = bands * bands;
     DirectionalMeans means;
     means.average.resize(points);
     means.sh.resize(points * coefficients);

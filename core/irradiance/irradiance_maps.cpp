@@ -76,7 +76,8 @@ void bake_exact_maps(const LightSet& lights, const IrradianceSettings& settings,
         for (std::size_t i = 0; i < texels; ++i) store_texel(sums.data() + i * table.rows(), face * texels + i, maps);
         const Vec3d here = largest_bound(sums, added_sums, table.rows(), 1 + count);
         for (int channel = 0; channel < 3; ++channel) bound[channel] = std::max(bound[channel], here[channel]);
-        progress.report("irradiance", 0.2 + 0.2 * (face / 2 + 1));
+        const int pairs_done = face / 2 + 1;
+        progress.report("irradiance", 0.2 + 0.2 * pairs_done);
     }
     maps.interpolation_bound = n >= 16 ? bound
                                        : interpolation_bound(with_directional_lights(lights, settings.lights),

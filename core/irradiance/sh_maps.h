@@ -22,7 +22,7 @@ namespace hairbake {
 /// flux^2. A tenth is added, because maps hold samples of the sphere. It is divided by the largest value of all maps.
 /// `auto` takes the fewest bands that predict at most sh_error, separately for the diffuse and the specular maps, at
 /// most 128. Deterministic for any thread count. Throws Error(cancelled).
-void bake_sh_maps(const EnvironmentMap& environment, const IrradianceSettings& settings, int report_bands,
+void bake_sh_maps(const EnvironmentMap& map, const IrradianceSettings& settings, int report_bands,
                   const Progress& progress, IrradianceMaps& maps);
 
 }  // namespace hairbake

@@ -147,11 +147,10 @@ private:
     void agree(const Corner& corner) {
         std::int64_t& normal = normal_of_[corner.position];
         const auto value = [&](std::int64_t n) { return normals_[static_cast<std::size_t>(n)]; };
-        if (corner.normal < 0 || normal == kNone)
-            normal = kNone;
-        else if (normal == kUnset)
+        const auto differs = [&] { return normal != corner.normal && value(normal) != value(corner.normal); };
+        if (corner.normal >= 0 && normal == kUnset)
             normal = corner.normal;
-        else if (normal != corner.normal && value(normal) != value(corner.normal))
+        else if (corner.normal < 0 || normal == kNone || differs())
             normal = kNone;
     }
     void read_face() {

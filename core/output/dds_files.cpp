@@ -45,6 +45,7 @@ WrittenFile write_cube(const CubeTexels& map, int face_size, double scale, const
                        const std::string& content) {
     const std::vector<CubeTexels> levels = cube_mips(map, face_size);
     std::vector<std::vector<Half4>> halves;
+    halves.reserve(levels.size());
     for (const CubeTexels& level : levels) halves.push_back(to_half_texels(level, scale));
     FileSink sink(file);
     sink.write(dds_header(face_size, static_cast<int>(levels.size())));

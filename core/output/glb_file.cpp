@@ -152,9 +152,9 @@ void check_glb_size(std::uint64_t vertices, std::uint64_t strands, int sh_bands,
 
 WrittenFile write_glb(const HairModel& model, const Transmittance& transmittance, const std::filesystem::path& folder) {
     const std::size_t vertices = model.vertex_count();
-    int bands = 0;
-    while (vertices && static_cast<std::size_t>(bands * bands) < transmittance.sh.size() / vertices) ++bands;
-    check_glb_size(vertices, model.strand_count(), bands, !transmittance.bent_cone.empty());
+    std::size_t bands = 0;
+    while (vertices && bands * bands < transmittance.sh.size() / vertices) ++bands;
+    check_glb_size(vertices, model.strand_count(), static_cast<int>(bands), !transmittance.bent_cone.empty());
 
     FileSink sink(folder / "hair.glb");
     SinkBuffer buffer(sink);

@@ -8,7 +8,7 @@
 namespace hairbake {
 namespace {
 
-std::vector<std::byte> encode(const char* format, OIIO::ImageSpec spec, OIIO::TypeDesc type, const void* pixels,
+std::vector<std::byte> encode(const char* format, OIIO::ImageSpec spec, const OIIO::TypeDesc& type, const void* pixels,
                               const Metadata& metadata) {
     for (const auto& [name, value] : metadata) spec.attribute(name, value);
     std::vector<unsigned char> bytes;

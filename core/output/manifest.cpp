@@ -91,8 +91,9 @@ Json receiver_facts(const std::vector<float>& receiver) {
         plain += receiver[i];
         cosine += receiver[i + 1];
     }
-    const auto points = static_cast<double>(receiver.size() / 2);
-    return {{"positions", receiver.size() / 2},
+    const std::size_t positions = receiver.size() / 2;
+    const auto points = static_cast<double>(positions);
+    return {{"positions", positions},
             {"mean", points > 0 ? Json(plain / points) : Json()},
             {"cosine_mean", points > 0 ? Json(cosine / points) : Json()}};
 }

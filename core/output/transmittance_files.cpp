@@ -29,8 +29,8 @@ WrittenFile write_transmittance_npy(std::span<const float> average, const std::f
 
 std::vector<WrittenFile> write_directional_npy(const Transmittance& transmittance, int sh_bands, bool bent_cone,
                                                bool receiver, const std::filesystem::path& folder) {
-    const std::size_t vertices = transmittance.average.size(),
-                      coefficients = static_cast<std::size_t>(sh_bands * sh_bands);
+    const std::size_t vertices = transmittance.average.size(), bands = static_cast<std::size_t>(sh_bands),
+                      coefficients = bands * bands;
     std::vector<WrittenFile> files;
     if (sh_bands > 0)
         files.push_back(write_npy(folder / "transmittance_sh.npy", {vertices, coefficients}, transmittance.sh,

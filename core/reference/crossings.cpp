@@ -70,6 +70,7 @@ float transmittance_of_crossings(const StrandGeometry& strands, const Vec3f& ori
     std::sort(hit.begin(), hit.end());
     hit.erase(std::unique(hit.begin(), hit.end()), hit.end());
     std::vector<Passage> passages;
+    passages.reserve(hit.size());
     for (const std::uint32_t segment : hit)
         passages.push_back({strand_of(strands, segment), through_segment(strands, segment, Vec3d(origin), Vec3d(l)),
                             0.5f * (strands.opacities[segment] + strands.opacities[segment + 1])});

@@ -67,6 +67,7 @@ ErrorBar measure_error(const StrandScene& scene, std::span<const float> average,
     const auto traced =
         trace_transmittance(scene, vertices, make_directions(DirectionSet::fibonacci, directions, 0), progress);
     std::vector<float> baked;
+    baked.reserve(vertices.size());
     for (const std::uint32_t v : vertices) baked.push_back(average[v]);
     ErrorBar bar = error_statistics(baked, traced);
     bar.inside_strand = inside;

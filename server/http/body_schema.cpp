@@ -59,7 +59,7 @@ Json parse(const std::string& text) {
     }
 }
 
-std::string shortened(std::string text, std::size_t length) {
+std::string shortened(const std::string& text, std::size_t length) {
     return text.size() <= length ? text : text.substr(0, length) + "...";
 }
 

@@ -12,7 +12,7 @@ namespace hairbake {
 /// counted against the route's limit.
 std::string read_json(const HttpRequest& request, const std::string& schema);
 
-/// The same for a text. Thread-safe.
-void check_json(const std::string& text, const std::string& schema);
+/// The same for a text and the schema `name`. Thread-safe.
+void check_json(const std::string& text, const std::string& name);
 
 }  // namespace hairbake

@@ -62,7 +62,8 @@ PageFiles::PageFiles(const fs::path& folder) {
     for (const auto& [name, path] : paths) {
         const std::string type = page_type(path.extension().string());
         if (type.empty()) continue;
-        std::string text = read_file(path), digest = Digest().add(text).hex();
+        std::string text = read_file(path);
+        std::string digest = Digest().add(text).hex();
         all.add(name + "\n" + digest + "\n");
         files_[name] = {type, std::move(text), std::move(digest)};
     }

@@ -107,7 +107,8 @@ HttpReply file_reply(const HttpRequest& request, OpenBlob blob, const std::strin
     return reply;
 }
 
-HttpReply text_reply(const HttpRequest& request, std::string text, const std::string& digest, const std::string& type) {
+HttpReply text_reply(const HttpRequest& request, const std::string& text, const std::string& digest,
+                     const std::string& type) {
     Span span;
     HttpReply reply = ranged(request, text.size(), digest, type, span);
     if (span.begin != span.end) reply.body = text.substr(span.begin, span.end - span.begin);

@@ -21,7 +21,8 @@ HttpReply cached_json(const HttpRequest& request, std::string json);
 HttpReply file_reply(const HttpRequest& request, OpenBlob blob, const std::string& digest, const std::string& type);
 
 /// The same of a text, with the ETag `digest`.
-HttpReply text_reply(const HttpRequest& request, std::string text, const std::string& digest, const std::string& type);
+HttpReply text_reply(const HttpRequest& request, const std::string& text, const std::string& digest,
+                     const std::string& type);
 
 /// Media type by the name's ending.
 std::string media_type(const std::string& name);

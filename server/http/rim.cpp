@@ -238,13 +238,14 @@ public:
                                       const httplib::ContentReader& reader) { answer(request, &reader, response); };
         Get(any_path, plain).Options(any_path, plain);
         Post(any_path, with_body).Put(any_path, with_body).Patch(any_path, with_body).Delete(any_path, with_body);
-        set_exception_handler([](const httplib::Request&, httplib::Response& response, std::exception_ptr failure) {
-            try {
-                std::rethrow_exception(failure);
-            } catch (...) {
-                fill(response, problem_of_current_exception());
-            }
-        });
+        set_exception_handler(
+            [](const httplib::Request&, httplib::Response& response, const std::exception_ptr& failure) {
+                try {
+                    std::rethrow_exception(failure);
+                } catch (...) {
+                    fill(response, problem_of_current_exception());
+                }
+            });
         set_error_handler([](const httplib::Request&, httplib::Response& response) {
             if (response.body.empty()) fill(response, problem_of_status(response.status));
             return HandlerResponse::Unhandled;

@@ -19,7 +19,7 @@ struct Target {
 
 /// "/v1/bakes?limit=5" taken apart, segments decoded. Nothing for what is no plain absolute path: an empty or dotted
 /// segment, an encoded slash or control character, a fragment.
-std::optional<Target> read_target(const std::string& target);
+std::optional<Target> read_target(const std::string& text);
 
 /// Whether a header value has a control character other than a tab.
 bool has_control_characters(const std::string& value);

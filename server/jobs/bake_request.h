@@ -17,7 +17,7 @@ struct AskedBake {
 /// Reads the request's JSON (config/request.schema.json, plus "priority" from -10 to 10): defaults are filled in, names
 /// become digests, digests must be stored. A path is refused. In the caller's transaction. Throws Refusal naming the
 /// field.
-AskedBake read_bake_request(Sql& sql, const std::string& body);
+AskedBake read_bake_request(Sql& sql, const std::string& text);
 
 BakePlan plan_bake(const AskedBake& asked);
 

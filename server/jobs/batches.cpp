@@ -18,7 +18,7 @@ constexpr std::size_t most_bakes = 100'000;
 }
 
 Json parse_body(const std::string& text) {
-    const Json body = Json::parse(text, nullptr, false);
+    Json body = Json::parse(text, nullptr, false);
     if (body.is_discarded()) throw Refusal(Refused::malformed, "the body is not JSON");
     if (!body.is_object()) refuse("", "the body is not a JSON object");
     static const std::set<std::string> allowed{"environment", "bakes",      "replaces", "name",

@@ -12,12 +12,12 @@ class Batches {
 public:
     Batches(Database& database, Queue& queue) : database_(database), queue_(queue) {}
 
-    /// `body`: {"environment": NEW, and one of "bakes": [ids], "replaces": ENVIRONMENT, "name": NAME, "models": [...],
+    /// `text`: {"environment": NEW, and one of "bakes": [ids], "replaces": ENVIRONMENT, "name": NAME, "models": [...],
     /// and optionally "irradiance": {...}, "priority"}. Each affected bake is asked for again with the new environment;
     /// "replaces" and "name" mean the bakes under that environment (digest, or path of an environment's name), "models"
     /// the newest bake of each model. With `dry_run` nothing is queued and the answer tells what would be reused and
     /// computed. Throws Refusal.
-    std::string rebake(const std::string& body, bool dry_run);
+    std::string rebake(const std::string& text, bool dry_run);
 
     /// How many of its bakes are in which state. Throws Refusal(not_found).
     std::string get(const std::string& id);

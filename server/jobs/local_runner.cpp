@@ -46,6 +46,7 @@ Child start(const WorkerLimits& limits) {
                                          "--cpu=" + std::to_string(limits.cpu_seconds),
                                          "--parent=" + std::to_string(::getpid())};
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
 

@@ -103,9 +103,11 @@ public:
         try {
             SQLite::Statement& prepared = prepare(statement, values);
             std::vector<SqlRow> rows;
+            const int columns = prepared.getColumnCount();
             while (prepared.executeStep()) {
                 std::vector<SqlValue> row;
-                for (int i = 0; i < prepared.getColumnCount(); ++i) row.push_back(value_of(prepared.getColumn(i)));
+                row.reserve(static_cast<std::size_t>(columns));
+                for (int i = 0; i < columns; ++i) row.push_back(value_of(prepared.getColumn(i)));
                 rows.emplace_back(std::move(row));
             }
             prepared.reset();

@@ -18,10 +18,10 @@
 
 namespace hairbake {
 
-/// Does what `task` (JSON) says; returns the object of "done". Throws Error.
-std::string run_task(const std::string& task, Progress& progress);
+/// Does what the task `text` (JSON) says; returns the object of "done". Throws Error.
+std::string run_task(const std::string& text, Progress& progress);
 
-/// `message` with the paths of the task's `names` replaced.
-std::string with_names(std::string message, const std::string& task);
+/// `message` with the paths of the `names` of the task `text` replaced.
+std::string with_names(std::string message, const std::string& text);
 
 }  // namespace hairbake

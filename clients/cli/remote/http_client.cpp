@@ -78,10 +78,11 @@ struct Receiver {
 };
 
 std::size_t on_body(char* data, std::size_t, std::size_t size, void* user) {
-    auto& [transfer, easy] = *static_cast<Receiver*>(user);
-    return guarded(transfer, CURL_WRITEFUNC_ERROR, [&, handle = easy] {
+    const auto& receiver = *static_cast<Receiver*>(user);
+    Transfer& transfer = receiver.transfer;
+    return guarded(transfer, CURL_WRITEFUNC_ERROR, [&] {
         long status = 0;
-        curl_easy_getinfo(handle, CURLINFO_RESPONSE_CODE, &status);
+        curl_easy_getinfo(receiver.easy, CURLINFO_RESPONSE_CODE, &status);
         transfer.answer.status = static_cast<int>(status);
         take_body(transfer, std::as_bytes(std::span(data, size)));
         return size;

@@ -118,7 +118,7 @@ Json parse_json(const std::string& text) {
         deep = deep || depth > deepest;
         return !deep;
     };
-    const Json json = Json::parse(text, shallow, false);
+    Json json = Json::parse(text, shallow, false);
     if (json.is_discarded() || deep)
         throw RemoteError(ExitCode::refused, "the server's answer is not JSON; is it a hairbaked?");
     return json;

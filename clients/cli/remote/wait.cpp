@@ -75,6 +75,7 @@ void list_batch(Server& server, const std::string& batch, const std::string& sta
 std::vector<EndedBake> wait_for_bakes(Server& server, const std::vector<std::string>& ids) {
     std::vector<EndedBake> all(ids.size());
     std::vector<Poll> polls;
+    polls.reserve(ids.size());
     for (const std::string& id : ids) polls.emplace_back(server, "/v1/bakes/" + id);
     for (Rhythm rhythm(server.progress());; rhythm.pause_now()) {
         double fraction = 0;

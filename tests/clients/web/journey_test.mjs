@@ -88,6 +88,17 @@ test('environments and a model are sent and shown with their facts', async () =>
     await upload('Models', join(sample, 'groom.hair'));
     assert.match(await page.locator('.card').innerText(), /60,000 vertices/); // --vertices 60000
     await keep_pictures('models');
+    await page.getByRole('link', { name: 'Meshes', exact: true }).click();
+    await page.getByRole('heading', { level: 1, name: 'Meshes' }).waitFor();
+    await page.locator('.drop-zone input[type=file]').setInputFiles(join(sample, 'head.obj'));
+    await page.getByRole('textbox', { name: 'Name' }).fill('heads/sample');
+    await keep_pictures('mesh_to_name');
+    await page.getByRole('button', { name: 'Put the name here' }).click();
+    await page.getByRole('link', { name: 'heads/sample' }).waitFor();
+    await keep_pictures('meshes');
+    await page.getByRole('link', { name: 'heads/sample' }).click();
+    await page.locator('#followers').waitFor();
+    await keep_pictures('name');
 });
 
 test('a bake is asked for in the form and watched to its end', async () => {
