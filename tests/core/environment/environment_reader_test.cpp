@@ -38,7 +38,7 @@ std::string message_of(const std::filesystem::path& file, const EnvironmentSetti
 }
 
 // Writes with OpenImageIO, so that not our own writer is read.
-void write(const std::filesystem::path& file, const EnvironmentMap& map, OIIO::TypeDesc type,
+void write(const std::filesystem::path& file, const EnvironmentMap& map, const OIIO::TypeDesc& type,
            const std::function<void(OIIO::ImageSpec&)>& change = {}, int channels = 3) {
     OIIO::ImageSpec spec(map.width, map.height, channels, type);
     if (change) change(spec);
@@ -102,7 +102,7 @@ TEST(EnvironmentReader, IntegersAreDecodedAsSrgbAndWarnedOf) {
     const TemporaryFolder folder;
     // IEC 61966-2-1 by hand: code 0.5 is ((0.5 + 0.055) / 1.055)^2.4 = 0.214041; 0.02 is 0.02 / 12.92 = 0.001548.
     const EnvironmentMap map = make_map(16, [](const Vec3d&) { return Vec3d{0.5, 0.02, 1}; });
-    const auto check = [&](const char* name, OIIO::TypeDesc type, double steps) {
+    const auto check = [&](const char* name, const OIIO::TypeDesc& type, double steps) {
         write(folder / name, map, type);
         const EnvironmentMap back = read(folder / name);
         EXPECT_TRUE(back.low_dynamic_range);

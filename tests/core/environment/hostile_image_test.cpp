@@ -84,7 +84,7 @@ std::string png_header(std::uint32_t width, std::uint32_t height) {
 }
 
 std::string hdr_header(const std::string& resolution) {
-    return "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + resolution + "\n\2\2\0\0";
+    return "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + resolution + "\n\2\2" + std::string(2, '\0');
 }
 
 TEST(HostileImage, HugeDeclaredSizesAreRefusedBeforeMemoryIsTaken) {
