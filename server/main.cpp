@@ -3,9 +3,11 @@
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -145,8 +147,17 @@ HttpReply answer(const Router& router, Metrics& metrics, HttpRequest& request) {
     return reply;
 }
 
+/// A connection takes a descriptor, and the usual soft limit is lower than what may wait.
+void allow_many_files() {
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+    limit.rlim_cur = limit.rlim_max;
+    ::setrlimit(RLIMIT_NOFILE, &limit);
+}
+
 int serve(const Settings& settings) {
     ::umask(027);
+    allow_many_files();
     prepare_signals();
     Service service(settings);
     Access access(settings.tokens);
@@ -154,12 +165,19 @@ int serve(const Settings& settings) {
     const Router router(all_routes(service, access, metrics), access);
     Rim rim({settings.socket, settings.address, settings.port, settings.threads, settings.waiting, settings.accel},
             [&](HttpRequest& request) { return answer(router, metrics, request); });
-    std::jthread serving([&] { rim.serve(); });
+    std::atomic<bool> stopping = false;
+    std::jthread serving([&] {
+        rim.serve();
+        if (stopping) return;
+        spdlog::critical("no connection can be accepted any more: the daemon ends, so that it is started anew");
+        _exit(1);  // what was answered is on the disk
+    });
     rim.wait_until_serving();
     std::printf("hairbaked listens on %s\n", rim.address().c_str());
     std::fflush(stdout);
     wait_for_signal();
     spdlog::info("stopping");
+    stopping = true;
     end_hard_after(std::chrono::seconds(4));
     rim.stop();
     service.stop();

@@ -15,7 +15,7 @@ namespace hairbake {
 namespace {
 
 constexpr double session_s = 12 * 3600;
-constexpr std::size_t most_sessions = 10'000, longest_token = 200;
+constexpr std::size_t most_sessions = 1'000, longest_token = 200;  // sessions of one token
 const std::string cookie_name = "hairbake_session";
 
 [[noreturn]] void deny(int status, const std::string& slug, const std::string& words) {
@@ -129,7 +129,14 @@ std::string Access::open_session(const HttpRequest& request) {
     const std::string cookie = new_token();
     const std::lock_guard lock(mutex_);
     std::erase_if(sessions_, [time = now()](const auto& session) { return session.second.expires < time; });
-    if (sessions_.size() >= most_sessions) deny(503, "busy", "too many sessions are open");
+    const auto of_token = [&](const auto& session) { return session.second.token == *token; };
+    if (std::count_if(sessions_.begin(), sessions_.end(), of_token) >= std::ptrdiff_t(most_sessions)) {
+        auto oldest = sessions_.end();
+        for (auto session = sessions_.begin(); session != sessions_.end(); ++session)
+            if (of_token(*session) && (oldest == sessions_.end() || session->second.expires < oldest->second.expires))
+                oldest = session;
+        sessions_.erase(oldest);
+    }
     sessions_[Digest().add(cookie).hex()] = {*token, now() + session_s};
     return cookie_name + "=" + cookie +
            "; Path=/; HttpOnly; SameSite=Strict; Max-Age=" + std::to_string(int(session_s));

@@ -16,8 +16,13 @@ BoundedPool::BoundedPool(int threads, int waiting) : waiting_(static_cast<std::s
             work(line, woken);
         });
     };
-    for (int i = 0; i < threads; ++i) add(accepted_, false);
-    add(refused_, true);
+    try {
+        for (int i = 0; i < threads; ++i) add(accepted_, false);
+        add(refused_, true);
+    } catch (...) {
+        shutdown();  // those that were made wait for jobs
+        throw;
+    }
 }
 
 BoundedPool::~BoundedPool() { shutdown(); }

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <exception>
 #include <limits>
 
@@ -21,6 +22,7 @@
 namespace hairbake {
 namespace {
 
+constexpr std::chrono::milliseconds read_patience(1000), refused_patience(20);
 constexpr int read_timeout_s = 30, write_timeout_s = 60, first_byte_timeout_s = 10;
 const std::string any_path = "/";  // the library routes nothing: every request is made to look for this
 
@@ -81,13 +83,13 @@ void refuse_connection(socket_t connection) {
 }
 
 /// Reads away what a client still sends, for a moment, so that the reply is not lost in a connection reset.
-void linger(socket_t connection) {
+void linger(socket_t connection, std::chrono::milliseconds patience) {
     ::shutdown(connection, SHUT_WR);
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+    const auto end = std::chrono::steady_clock::now() + patience;
     char sink[65536];
     for (std::size_t total = 0; total < (16u << 20) && std::chrono::steady_clock::now() < end;) {
         pollfd ready{connection, POLLIN, 0};
-        if (::poll(&ready, 1, 100) < 0) return;
+        if (::poll(&ready, 1, static_cast<int>(patience.count() / 10)) < 0) return;
         if (!ready.revents) continue;
         const ssize_t count = ::recv(connection, sink, sizeof sink, MSG_DONTWAIT);
         if (count <= 0) return;
@@ -309,7 +311,8 @@ private:
                     return gathered.flush() && done;
                 });
         }
-        if (body_left) linger(connection);
+        // Many wait for the one thread that refuses.
+        if (body_left) linger(connection, BoundedPool::is_refusing() ? refused_patience : read_patience);
         httplib::detail::shutdown_socket(connection);
         httplib::detail::close_socket(connection);
         return served;
