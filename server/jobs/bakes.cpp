@@ -77,6 +77,13 @@ Json short_view(const SqlRow& row) {
     return json;
 }
 
+/// Of a bake that was asked by several names for one field, the one that the list is about.
+void tell_name(Sql& sql, const std::string& path, Json& view) {
+    for (const SqlRow& row : sql.rows("SELECT field, version FROM bake_names WHERE bake = ? AND path = ?",
+                                      {view["id"].get<std::string>(), path}))
+        view["names"][row.text(0)] = {{"path", path}, {"version", row.integer(1)}};
+}
+
 Json full_view(Sql& sql, Queue& queue, const SqlRow& row) {
     Json json = short_view(row);
     json["stages"] = Json::array();
@@ -122,10 +129,11 @@ void Bakes::keep_view(std::uint64_t version, const std::string& id, const std::s
 
 std::string Bakes::get(const std::string& id) {
     if (auto view = known_view(id)) return *view;
-    const std::uint64_t version = database_.version();
+    std::uint64_t version = 0;
     bool done = false;
     std::string answer;
     database_.read([&](Sql& sql) {
+        version = database_.version_read();
         const auto rows = sql.rows(std::string(columns) + "WHERE id = ?", {id});
         if (rows.empty()) refuse_unknown(id);
         answer = full_view(sql, queue_, rows[0]).dump();
@@ -146,14 +154,17 @@ std::string Bakes::list(const BakeFilter& filter) {
     add(filter.state, " AND state = ?");
     add(filter.model, " AND hair = ?");
     add(filter.environment, " AND environment = ?");
-    add(filter.name, " AND ? IN (SELECT json_extract(n.value, '$.path') FROM json_each(bakes.names) n)");
+    add(filter.name, " AND id IN (SELECT bake FROM bake_names WHERE path = ?)");
     add(filter.batch, " AND id IN (SELECT bake FROM batch_bakes WHERE batch = ?)");
     values.emplace_back(std::int64_t(filter.limit) + 1);
     Json answer{{"bakes", Json::array()}, {"next", nullptr}};
     database_.read([&](Sql& sql) {
         const auto rows = sql.rows(columns + where + " ORDER BY seq DESC LIMIT ?", values);
         const auto limit = static_cast<std::size_t>(filter.limit);
-        for (std::size_t i = 0; i < std::min(limit, rows.size()); ++i) answer["bakes"].push_back(short_view(rows[i]));
+        for (std::size_t i = 0; i < std::min(limit, rows.size()); ++i) {
+            answer["bakes"].push_back(short_view(rows[i]));
+            if (!filter.name.empty()) tell_name(sql, filter.name, answer["bakes"].back());
+        }
         if (rows.size() > limit) answer["next"] = std::to_string(rows[limit - 1].integer(13));
     });
     return answer.dump();

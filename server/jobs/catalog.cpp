@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "core/base/error.h"
 #include "server/jobs/words.h"
+#include "server/jobs/work_folder.h"
 #include "server/store/refusal.h"
 
 namespace hairbake {
@@ -28,6 +30,15 @@ Json entry(const std::string& kind, const SqlRow& row) {
 
 [[noreturn]] void refuse_unknown(const std::string& kind, const std::string& digest) {
     throw Refusal(Refused::not_found, "there is no " + kind + " " + digest.substr(0, 64));
+}
+
+/// Why the file could not be read. A worker that dies again and again is the file's doing.
+[[noreturn]] void refuse_outcome(const Outcome& outcome) {
+    if (outcome.end == Outcome::End::failed && outcome.kind == "out_of_resources")
+        throw Error(ErrorKind::out_of_resources, outcome.message);
+    if (outcome.end == Outcome::End::failed && outcome.kind == "internal")
+        throw Error(ErrorKind::internal, outcome.message);
+    throw Refusal(Refused::unprocessable, outcome.message, "sha256");
 }
 
 }  // namespace
@@ -55,26 +66,24 @@ void Catalog::inspect(const std::string& kind, const std::string& digest) {
         std::counting_semaphore<2>& readers;
         ~Release() { readers.release(); }
     } const release{readers_};
-    const fs::path folder = store_.incoming_folder() / random_name();
-    make_folder(folder);
+    const WorkFolder folder(store_.incoming_folder());
     const std::string path = store_.path_of(digest).string();
     Task task;
-    task.input = Json{{"task", "inspect"},         {"kind", kind}, {"file", path},
-                      {"folder", folder.string()}, {"threads", 1}, {"names", {{path, "sha256:" + digest}}}}
+    task.input = Json{{"task", "inspect"}, {"kind", kind},
+                      {"file", path},      {"folder", folder.path.string()},
+                      {"threads", 1},      {"names", {{path, "sha256:" + digest}}}}
                      .dump();
-    const Outcome outcome = runner_.run(task);
-    if (outcome.end == Outcome::End::done) {
-        const std::string thumbnail = digest_of_file(folder / "thumbnail.png");
-        const auto held = database_.lock();  // no eviction may come between blob and row
-        store_.adopt(folder / "thumbnail.png", thumbnail);
-        database_.write([&](Sql& sql) {
-            sql.run("INSERT OR IGNORE INTO inputs(kind, sha256, facts, thumbnail, created) VALUES(?, ?, ?, ?, ?)",
-                    {kind, digest, outcome.facts, thumbnail, now()});
-        });
-    }
-    std::error_code ignored;
-    fs::remove_all(folder, ignored);
-    if (outcome.end != Outcome::End::done) throw Refusal(Refused::unprocessable, outcome.message, "sha256");
+    Outcome outcome = runner_.run(task);
+    if (outcome.end == Outcome::End::died) outcome = runner_.run(task);  // killed from outside, or by the file?
+    if (outcome.end != Outcome::End::done) refuse_outcome(outcome);
+    const fs::path picture = folder.path / "thumbnail.png";
+    const std::string thumbnail = digest_of_file(picture);
+    const auto held = database_.lock();  // no eviction may come between blob and row
+    store_.adopt(picture, thumbnail);
+    database_.write([&](Sql& sql) {
+        sql.run("INSERT OR IGNORE INTO inputs(kind, sha256, facts, thumbnail, created) VALUES(?, ?, ?, ?, ?)",
+                {kind, digest, outcome.facts, thumbnail, now()});
+    });
 }
 
 std::string Catalog::get(const std::string& kind, const std::string& digest) {
@@ -138,7 +147,7 @@ void Catalog::remove(const std::string& kind, const std::string& digest) {
                     {digest, digest, digest})
                  .empty();
     });
-    if (!blob_needed) store_.remove(digest);
+    if (!blob_needed) store_.remove({digest});
 }
 
 }  // namespace hairbake

@@ -20,7 +20,8 @@ public:
         std::string answer;
         bool known = false;
     };
-    /// Has a worker read the blob unless that was done before. Throws Refusal(unprocessable) with the worker's words.
+    /// Has a worker read the blob, whose digest was checked, unless that was done before. Throws Refusal(unprocessable)
+    /// with the worker's words, Error for what is not the file's fault.
     Added add(const std::string& kind, const std::string& digest);
     std::string get(const std::string& kind, const std::string& digest);
     /// {"models": [...], "next": cursor or null}, newest first.

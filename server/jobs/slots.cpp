@@ -7,32 +7,18 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <span>
 
 #include "core/base/digest.h"
 #include "core/base/error.h"
 #include "server/store/eviction.h"
+#include "server/store/refusal.h"
 
 namespace hairbake {
 namespace fs = std::filesystem;
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// A folder in tmp/ that goes away with its owner.
-class WorkFolder {
-public:
-    explicit WorkFolder(const fs::path& parent) : path(parent / random_name()) { make_folder(path); }
-    ~WorkFolder() {
-        std::error_code ignored;
-        fs::remove_all(path, ignored);
-    }
-    WorkFolder(const WorkFolder&) = delete;
-    WorkFolder& operator=(const WorkFolder&) = delete;
-
-    const fs::path path;
-};
 
 /// Where the phases of a stage lie in its whole, by the usual shares of time.
 double overall(const std::string& kind, std::string_view phase, double fraction) {
@@ -91,15 +77,22 @@ void Slots::work() {
 /// leaves `running` is found at the next start.
 void Slots::run_to_the_end(const ClaimedStage& stage) {
     StageError failure;
+    bool later = false;
     try {
         return run(stage);
+    } catch (const Refusal& refusal) {  // memory or descriptors are short
+        failure = {"out_of_resources", refusal.what(), ""};
+        later = refusal.why() == Refused::busy;
     } catch (const Error& error) {
         failure = {word_for(error.kind()), error.what(), error.field()};
     } catch (const std::exception& error) {
         failure = {"internal", error.what(), ""};
     }
     while (!queue_.stopping()) try {
-            return queue_.failed(stage, failure);
+            if (!later) return queue_.failed(stage, failure);
+            spdlog::warn("stage {} starts again: {}", stage.key.substr(0, 12), failure.message);
+            std::this_thread::sleep_for(std::chrono::seconds(1));
+            return queue_.released(stage);
         } catch (const std::exception& error) {
             spdlog::error("the end of stage {} cannot be written down: {}", stage.key.substr(0, 12), error.what());
             std::this_thread::sleep_for(std::chrono::seconds(1));
@@ -141,7 +134,7 @@ void Slots::run(const ClaimedStage& stage) {
     if (outcome.end != Outcome::End::done) folder.reset();  // what it holds may be what the database lacks
     switch (outcome.end) {
         case Outcome::End::done:
-            return store_result(stage, folder->path / "result");
+            return store_result(stage, folder);
         case Outcome::End::failed:
             return queue_.failed(stage, {outcome.kind, outcome.message, outcome.field});
         case Outcome::End::died:
@@ -155,14 +148,16 @@ void Slots::run(const ClaimedStage& stage) {
 void Slots::remove_spoiled_inputs(const std::vector<std::string>& digests) {
     for (const std::string& digest : digests)
         if (digest_of_file(store_.path_of(digest)) != digest) {
-            store_.remove(digest);
+            store_.remove({digest});
+            queue_.blob_lost(digest);  // with the facts that were read from it
             throw Error(ErrorKind::bad_input,
                         "the stored bytes of sha256:" + digest + " were spoiled; send them again");
         }
 }
 
 /// A worker is not believed: key and digests are checked before its files become blobs.
-void Slots::store_result(const ClaimedStage& stage, const fs::path& folder) {
+void Slots::store_result(const ClaimedStage& stage, std::optional<WorkFolder>& work) {
+    const fs::path folder = work->path / "result";
     std::ifstream stream(folder / "manifest.json", std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     const Json manifest = Json::parse(text, nullptr, false);
@@ -181,6 +176,7 @@ void Slots::store_result(const ClaimedStage& stage, const fs::path& folder) {
     }
     const auto held = database_.lock();  // no eviction may come between the blobs and the rows that refer to them
     for (const StageFile& file : files) store_.adopt(folder / file.name, file.sha256);
+    work.reset();  // who hears that the stage is done finds nothing of it left over
     queue_.done(stage, files, text);
 }
 

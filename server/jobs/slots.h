@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <thread>
 #include <vector>
 
 #include "server/jobs/queue.h"
 #include "server/jobs/runner.h"
+#include "server/jobs/work_folder.h"
 
 namespace hairbake {
 
@@ -24,7 +26,7 @@ private:
     void run(const ClaimedStage& stage);
     std::string task_for(const ClaimedStage& stage, const std::filesystem::path& folder);
     void remove_spoiled_inputs(const std::vector<std::string>& digests);
-    void store_result(const ClaimedStage& stage, const std::filesystem::path& folder);
+    void store_result(const ClaimedStage& stage, std::optional<WorkFolder>& work);
 
     Queue& queue_;
     Runner& runner_;

@@ -56,10 +56,8 @@ std::vector<std::string> BlobStore::recover() {
             fs::remove(entry, ignored);
     }
     std::vector<std::string> lost;
-    for (const auto& [digest, bytes] : rows) {
-        forget(digest);
-        lost.push_back(digest);
-    }
+    for (const auto& [digest, bytes] : rows) lost.push_back(digest);
+    if (!lost.empty()) forget(lost);
     return lost;
 }
 
@@ -91,12 +89,13 @@ bool BlobStore::put(IncomingFile& file, const std::string& expected) {
 bool BlobStore::adopt(const fs::path& file, const std::string& digest) {
     const auto held = database_.lock();
     const bool known = size_of(digest).has_value();
-    if (!known) {
+    if (!known ||
+        !is_verified(digest)) {  // bytes that nobody has looked at since the start may be spoiled: these are not
         const auto bytes = static_cast<std::int64_t>(fs::file_size(file));
         if (::rename(file.c_str(), path_of(digest).c_str()) != 0) throw_store_error(file, errno);
         sync_folder(path_of(digest).parent_path());
         database_.write([&](Sql& sql) {
-            sql.run("INSERT INTO blobs VALUES(?, ?, ?, ?)", {digest, bytes, now(), now()});
+            sql.run("INSERT OR IGNORE INTO blobs VALUES(?, ?, ?, ?)", {digest, bytes, now(), now()});
         });
         const std::lock_guard lock(mutex_);
         verified_.insert(digest);
@@ -109,47 +108,65 @@ OpenBlob BlobStore::open(const std::string& digest) {
     if (!is_digest(digest) || !size_of(digest))
         throw Refusal(Refused::not_found, "there is no blob " + digest.substr(0, 64), "sha256");
     OpenBlob blob{Descriptor(::open(path_of(digest).c_str(), O_RDONLY | O_CLOEXEC)), 0};
+    if (!blob.file && errno == ENOENT) lose_if_missing(digest);
     struct stat facts {};
-    if (!blob.file || ::fstat(blob.file.get(), &facts) != 0) {
-        if (errno == EMFILE || errno == ENFILE) throw Refusal(Refused::busy, "too many open files");
-        forget(digest);
-        throw LostBlob(digest);
-    }
+    if (!blob.file || ::fstat(blob.file.get(), &facts) != 0 || !S_ISREG(facts.st_mode)) refuse_for_now(digest);
     blob.bytes = static_cast<std::uint64_t>(facts.st_size);
     verify(digest, blob.file.get());
     touch(digest);
     return blob;
 }
 
+/// Whatever keeps a file from being read now may pass; nothing is forgotten for it.
+void BlobStore::refuse_for_now(const std::string& digest) {
+    throw Refusal(Refused::busy, "the stored bytes of sha256:" + digest + " cannot be read now");
+}
+
+void BlobStore::lose_if_missing(const std::string& digest) {
+    const auto held = database_.lock();  // it may have been removed and sent again meanwhile
+    if (fs::exists(path_of(digest)) || !size_of(digest)) refuse_for_now(digest);
+    forget({digest});
+    throw LostBlob(digest);
+}
+
+bool BlobStore::is_verified(const std::string& digest) {
+    const std::lock_guard lock(mutex_);
+    return verified_.count(digest) > 0;
+}
+
 void BlobStore::verify(const std::string& digest, int descriptor) {
-    {
-        const std::lock_guard lock(mutex_);
-        if (verified_.count(digest)) return;
-    }
+    if (is_verified(digest)) return;
     Digest found;
     std::vector<std::byte> piece(1 << 18);
     ssize_t count = 0;
     for (off_t at = 0; (count = ::pread(descriptor, piece.data(), piece.size(), at)) > 0; at += count)
         found.add(std::span(piece).first(static_cast<std::size_t>(count)));
-    if (count < 0 || found.hex() != digest) {
-        remove(digest);
+    if (count < 0) refuse_for_now(digest);
+    if (found.hex() != digest) {
+        const auto held = database_.lock();
+        if (is_verified(digest)) refuse_for_now(digest);  // replaced by good bytes meanwhile
+        remove({digest});
         throw LostBlob(digest);
     }
     const std::lock_guard lock(mutex_);
     verified_.insert(digest);
 }
 
-void BlobStore::remove(const std::string& digest) {
+void BlobStore::remove(const std::vector<std::string>& digests) {
     const auto held = database_.lock();
-    forget(digest);
-    ::unlink(path_of(digest).c_str());
+    forget(digests);
+    for (const std::string& digest : digests) ::unlink(path_of(digest).c_str());
 }
 
-void BlobStore::forget(const std::string& digest) {
-    database_.write([&](Sql& sql) { sql.run("DELETE FROM blobs WHERE sha256 = ?", {digest}); });
+void BlobStore::forget(const std::vector<std::string>& digests) {
+    database_.write([&](Sql& sql) {
+        for (const std::string& digest : digests) sql.run("DELETE FROM blobs WHERE sha256 = ?", {digest});
+    });
     const std::lock_guard lock(mutex_);
-    verified_.erase(digest);
-    used_.erase(digest);
+    for (const std::string& digest : digests) {
+        verified_.erase(digest);
+        used_.erase(digest);
+    }
 }
 
 void BlobStore::touch(const std::string& digest) {

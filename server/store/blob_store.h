@@ -62,22 +62,27 @@ public:
     /// another digest. Returns whether the blob is new.
     bool put(IncomingFile& file, const std::string& expected);
 
-    /// Takes over a file that is on the disk already (fsync done) and whose digest was checked.
+    /// Takes over a file that is on the disk already (fsync done) and whose digest was checked. Returns whether the
+    /// blob is new. It also takes the place of stored bytes that were not verified since the start.
     bool adopt(const std::filesystem::path& file, const std::string& digest);
 
-    /// Opens a blob; checks its digest when it is the first time since the start. Throws Refusal(not_found), LostBlob.
+    /// Opens a blob; checks its digest when it is the first time since the start. Throws Refusal(not_found), LostBlob,
+    /// and Refusal(busy) for a file that cannot be read now, which is not forgotten.
     OpenBlob open(const std::string& digest);
 
-    /// Removes row and file.
-    void remove(const std::string& digest);
+    /// Removes rows and files, in one transaction.
+    void remove(const std::vector<std::string>& digests);
 
     /// Notes that blobs were used; written to the database with flush_uses().
     void touch(const std::string& digest);
     void flush_uses();
 
 private:
+    bool is_verified(const std::string& digest);
     void verify(const std::string& digest, int descriptor);
-    void forget(const std::string& digest);
+    [[noreturn]] static void refuse_for_now(const std::string& digest);
+    [[noreturn]] void lose_if_missing(const std::string& digest);
+    void forget(const std::vector<std::string>& digests);
 
     std::filesystem::path folder_;
     Database& database_;

@@ -175,6 +175,7 @@ void Database::read(const std::function<void(Sql&)>& body) {
         explicit Reading(bool& flag) : now(flag) { now = true; }
         ~Reading() { now = false; }
     } const reading{in_read_};
+    version_read_ = version_;
     try {
         reader_->run("BEGIN", {});
         try {

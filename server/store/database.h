@@ -56,6 +56,8 @@ public:
     void read(const std::function<void(Sql&)>& body);
     /// Grows with each write(), before it returns: what was read after asking holds while the number stays.
     std::uint64_t version() const { return version_; }
+    /// To be asked inside read(): version() as it was when that began.
+    std::uint64_t version_read() const { return version_read_; }
     /// Held by who must keep files and rows in step: nobody else writes meanwhile.
     std::unique_lock<std::recursive_mutex> lock() { return std::unique_lock(writing_); }
 
@@ -64,7 +66,8 @@ private:
     std::recursive_mutex writing_, reading_;  ///< in this order
     std::unique_ptr<Connection> writer_, reader_;
     std::atomic<std::uint64_t> version_ = 0;
-    bool in_read_ = false;  ///< under reading_
+    bool in_read_ = false;            ///< under reading_
+    std::uint64_t version_read_ = 0;  ///< under reading_
 };
 
 }  // namespace hairbake

@@ -1,5 +1,6 @@
 #include "server/store/eviction.h"
 
+#include <optional>
 #include <vector>
 
 namespace hairbake {
@@ -9,13 +10,18 @@ constexpr const char* live_bake_of_stage =
     "EXISTS(SELECT 1 FROM bakes b WHERE b.transmittance = s.key AND b.state IN ('queued', 'running')) OR "
     "EXISTS(SELECT 1 FROM bakes b WHERE b.irradiance = s.key AND b.state IN ('queued', 'running'))";
 
-/// The stored stage that was used longest ago and that no live bake needs; empty when there is none.
-std::string oldest_stage(Sql& sql) {
-    const auto rows =
-        sql.rows(std::string("SELECT s.key FROM stages s WHERE s.state = 'done' AND NOT (") + live_bake_of_stage +
-                 ") ORDER BY (SELECT max(bl.used) FROM stage_files f JOIN blobs bl USING(sha256) "
-                 "WHERE f.stage = s.key), s.seq LIMIT 1");
-    return rows.empty() ? std::string() : rows[0].text(0);
+constexpr int stages_at_once = 100;
+
+/// The stored stages that were used longest ago and that no live bake needs, oldest first.
+std::vector<std::string> oldest_stages(Sql& sql) {
+    std::vector<std::string> keys;
+    for (const SqlRow& row :
+         sql.rows(std::string("SELECT s.key FROM stages s WHERE s.state = 'done' AND NOT (") + live_bake_of_stage +
+                      ") ORDER BY (SELECT max(bl.used) FROM stage_files f JOIN blobs bl USING(sha256) "
+                      "WHERE f.stage = s.key), s.seq LIMIT ?",
+                  {std::int64_t(stages_at_once)}))
+        keys.push_back(row.text(0));
+    return keys;
 }
 
 /// Forgets a stage and the bakes that it finished; returns its blobs that nothing else refers to.
@@ -30,6 +36,8 @@ std::vector<std::string> forget_stage(Sql& sql, const std::string& key) {
                   {key}))
         blobs.push_back(row.text(0));
     sql.run("DELETE FROM batch_bakes WHERE bake IN (SELECT id FROM bakes WHERE transmittance = ? OR irradiance = ?)",
+            {key, key});
+    sql.run("DELETE FROM bake_names WHERE bake IN (SELECT id FROM bakes WHERE transmittance = ? OR irradiance = ?)",
             {key, key});
     sql.run("DELETE FROM bakes WHERE transmittance = ?", {key});
     sql.run("DELETE FROM bakes WHERE irradiance = ?", {key});
@@ -66,26 +74,37 @@ std::vector<std::string> forget_input(Sql& sql, const std::string& digest) {
     return blobs;
 }
 
+/// Forgets what is oldest until `excess` bytes are free or a transaction has done enough. Returns the blobs to remove;
+/// nothing when there is nothing to forget.
+std::optional<std::vector<std::string>> forget_oldest(Sql& sql, BlobStore& store, std::uint64_t excess,
+                                                      const std::string& spared) {
+    std::vector<std::string> blobs;
+    std::uint64_t freed = 0;
+    const auto take = [&](const std::vector<std::string>& forgotten) {
+        for (const std::string& digest : forgotten) freed += store.size_of(digest).value_or(0);
+        blobs.insert(blobs.end(), forgotten.begin(), forgotten.end());
+    };
+    const std::vector<std::string> stages = oldest_stages(sql);
+    for (std::size_t i = 0; i < stages.size() && freed < excess; ++i) take(forget_stage(sql, stages[i]));
+    if (!stages.empty()) return blobs;
+    const std::string input = oldest_input(sql, spared);
+    if (input.empty()) return std::nullopt;
+    take(forget_input(sql, input));
+    return blobs;
+}
+
 }  // namespace
 
 bool evict(Database& database, BlobStore& store, std::uint64_t budget, const std::string& spared) {
     const auto held = database.lock();  // rows and files go together
-    if (store.total_bytes() <= budget) return true;
+    std::uint64_t total = store.total_bytes();
+    if (total <= budget) return true;
     store.flush_uses();
-    while (store.total_bytes() > budget) {
-        std::vector<std::string> blobs;
-        database.write([&](Sql& sql) {
-            if (const std::string stage = oldest_stage(sql); !stage.empty())
-                blobs = forget_stage(sql, stage);
-            else if (const std::string input = oldest_input(sql, spared); !input.empty())
-                blobs = forget_input(sql, input);
-            else
-                return;
-            blobs.push_back({});  // something was forgotten, be it without a blob of its own
-        });
-        if (blobs.empty()) return false;
-        for (const std::string& digest : blobs)
-            if (!digest.empty()) store.remove(digest);
+    for (; total > budget; total = store.total_bytes()) {
+        std::optional<std::vector<std::string>> blobs;
+        database.write([&](Sql& sql) { blobs = forget_oldest(sql, store, total - budget, spared); });
+        if (!blobs) return false;
+        store.remove(*blobs);
     }
     return true;
 }
