@@ -40,6 +40,16 @@ std::vector<std::string> bakes_of(Sql& sql, const std::string& stage, const std:
     return ids;
 }
 
+/// A name that a bake is asked by now is noted beside those that it was asked by before; the bake itself tells the last
+/// one of each field.
+void note_names(Sql& sql, const BakePlan& plan) {
+    sql.run("UPDATE bakes SET names = json_patch(names, ?) WHERE id = ?", {plan.names, plan.id});
+    sql.run(
+        "INSERT OR REPLACE INTO bake_names SELECT ?, key, json_extract(value, '$.path'), json_extract(value, "
+        "'$.version') FROM json_each(?)",
+        {plan.id, plan.names});
+}
+
 }  // namespace
 
 Queue::Queue(Database& database, BlobStore& store, int max_crashes)
@@ -91,9 +101,7 @@ void Queue::add_stage(Sql& sql, const StagePlan& stage, int priority) {
 Submitted Queue::add_bake(Sql& sql, const BakePlan& plan) {
     const auto rows = sql.rows("SELECT state FROM bakes WHERE id = ?", {plan.id});
     const std::string state = rows.empty() ? "" : rows[0].text(0);
-    // A name that it is asked by now is noted beside those that it was asked by before.
-    if (is_live(state) || state == "done")
-        sql.run("UPDATE bakes SET names = json_patch(names, ?) WHERE id = ?", {plan.names, plan.id});
+    note_names(sql, plan);
     if (state == "done") return {plan.id, state, note_done(sql, plan.id, plan.names)};
     for (const StagePlan* stage : plan.stages()) add_stage(sql, *stage, plan.priority);
     if (rows.empty())
@@ -106,9 +114,9 @@ Submitted Queue::add_bake(Sql& sql, const BakePlan& plan) {
         sql.run("UPDATE bakes SET priority = max(priority, ?) WHERE id = ?", {std::int64_t(plan.priority), plan.id});
     else
         sql.run(
-            "UPDATE bakes SET state = 'queued', names = ?, priority = ?, attempts = attempts + 1, error = NULL, "
-            "finished = NULL WHERE id = ?",
-            {plan.names, std::int64_t(plan.priority), plan.id});
+            "UPDATE bakes SET state = 'queued', priority = ?, attempts = attempts + 1, error = NULL, finished = NULL "
+            "WHERE id = ?",
+            {std::int64_t(plan.priority), plan.id});
     settle_bake(sql, plan.id);
     const std::string after = sql.rows("SELECT state FROM bakes WHERE id = ?", {plan.id}).at(0).text(0);
     return {plan.id, after, false};
@@ -254,6 +262,7 @@ std::optional<ClaimedStage> Queue::claim() {
         std::unique_lock lock(mutex_);
         if (claimed) {
             running_[claimed->key] = {claimed->cancel, {}};
+            if (stopping_) *claimed->cancel = true;  // stop() has walked the running ones already
             return claimed;
         }
         held.unlock();

@@ -12,6 +12,7 @@ void prune(Database& database, double time) {
         sql.run(
             "DELETE FROM batch_bakes WHERE batch NOT IN (SELECT id FROM batches) OR bake NOT IN (SELECT id FROM "
             "bakes)");
+        sql.run("DELETE FROM bake_names WHERE bake NOT IN (SELECT id FROM bakes)");
         sql.run(
             "DELETE FROM stages WHERE state IN ('failed', 'cancelled') AND "
             "NOT EXISTS(SELECT 1 FROM bakes b WHERE b.transmittance = stages.key) AND "

@@ -6,6 +6,14 @@ namespace hairbake {
 // JSON.
 const char* schema_statements(int from) {
     if (from == 1) return "ALTER TABLE uploads ADD COLUMN token TEXT NOT NULL DEFAULT ''";
+    if (from == 2)
+        return R"sql(
+CREATE TABLE bake_names(bake TEXT NOT NULL, field TEXT NOT NULL, path TEXT NOT NULL, version INTEGER NOT NULL,
+    PRIMARY KEY(bake, field, path)) WITHOUT ROWID;
+CREATE INDEX bake_names_by_path ON bake_names(path);
+INSERT INTO bake_names SELECT b.id, n.key, json_extract(n.value, '$.path'), json_extract(n.value, '$.version')
+    FROM bakes b, json_each(b.names) n;
+)sql";
     return R"sql(
 CREATE TABLE blobs(sha256 TEXT PRIMARY KEY, bytes INTEGER NOT NULL, created REAL NOT NULL, used REAL NOT NULL)
     WITHOUT ROWID;

@@ -159,8 +159,8 @@ class Restarts(unittest.TestCase):
             bake = d.ask("POST", "/v1/bakes", quick_request(d.put(hair_bytes()))).json["id"]
             self.assertEqual(d.wait(bake)["state"], "done")
             d.stop()
-            # Version 1 did not know who began an upload.
-            self.alter(d, "ALTER TABLE uploads DROP COLUMN token; PRAGMA user_version = 1")
+            # Version 1 did not know who began an upload, version 2 only the last name that a bake was asked by.
+            self.alter(d, "ALTER TABLE uploads DROP COLUMN token; DROP TABLE bake_names; PRAGMA user_version = 1")
             d.start()
             self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}").json["state"], "done")
             reply = d.ask("POST", "/v1/uploads", headers={
