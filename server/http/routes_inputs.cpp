@@ -11,12 +11,18 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr std::uint64_t json_limit = 64 << 10;
 
-/// Streams the body into the store. Returns its digest and whether it is new.
-std::pair<std::string, bool> receive_blob(Service& service, const HttpRequest& request, const std::string& expected) {
-    const std::unique_ptr<IncomingFile> file = service.receive(request.content_length.value_or(0));
+struct ReceivedBlob {
+    std::string digest;
+    std::uint64_t bytes = 0;
+    bool fresh = false;
+};
+
+/// Streams the body into the store.
+ReceivedBlob receive_blob(Service& service, const HttpRequest& request, const std::string& expected) {
+    const std::unique_ptr<IncomingFile> file = service.receive(request.content_length.value_or(0), expected);
     request.read_body([&](std::span<const std::byte> bytes) { file->add(bytes); });
     const bool fresh = service.store_blob(*file, expected);
-    return {file->digest(), fresh};
+    return {file->digest(), file->bytes(), fresh};
 }
 
 void check_digest(const std::string& digest) {
@@ -27,8 +33,8 @@ void check_digest(const std::string& digest) {
 HttpReply put_blob(Service& service, HttpRequest& request) {
     const std::string digest = request.parameters.at("sha256");
     check_digest(digest);
-    const bool fresh = receive_blob(service, request, digest).second;
-    return json_reply(fresh ? 201 : 200, Json{{"sha256", digest}, {"bytes", *service.blob_size(digest)}}.dump())
+    const ReceivedBlob received = receive_blob(service, request, digest);
+    return json_reply(received.fresh ? 201 : 200, Json{{"sha256", digest}, {"bytes", received.bytes}}.dump())
         .with("Location", "/v1/blobs/" + digest);
 }
 
@@ -54,14 +60,14 @@ HttpReply add_input(Service& service, HttpRequest& request, const std::string& k
                           "a JSON body has a length, of at most " + std::to_string(json_limit) + " bytes");
         digest = digest_in(request);
     } else if (type.starts_with("application/octet-stream")) {
-        digest = receive_blob(service, request, "").first;
+        digest = receive_blob(service, request, "").digest;
     } else {
         return problem(
             415, "unsupported",
             "Content-Type is missing; allowed is application/json with a digest, or application/octet-stream",
             "Content-Type");
     }
-    const Catalog::Added added = service.catalog().add(kind, digest);
+    const Catalog::Added added = service.add_input(kind, digest);
     return json_reply(added.known ? 200 : 201, added.answer).with("Location", "/v1/" + kind + "s/" + digest);
 }
 

@@ -70,10 +70,10 @@ HttpReply options(Service& service) {
 
 HttpReply create(Service& service, HttpRequest& request) {
     const std::uint64_t bytes = length_header(request, "Upload-Length");
-    service.receive(bytes);  // whether there is room
     const std::string metadata = request.header("Upload-Metadata").value_or("");
-    const UploadState state =
-        service.uploads().create(bytes, metadata_value(metadata, "sha256"), metadata, request.caller);
+    const std::string digest = metadata_value(metadata, "sha256");
+    service.receive(bytes, digest);  // whether there is room
+    const UploadState state = service.uploads().create(bytes, digest, metadata, request.caller);
     return tus_reply(201)
         .with("Location", "/v1/uploads/" + state.id)
         .with("Upload-Offset", "0")
@@ -91,6 +91,9 @@ HttpReply look(Service& service, HttpRequest& request) {
 }
 
 HttpReply append(Service& service, HttpRequest& request) {
+    if (!request.header("Content-Type"))
+        return problem(415, "unsupported", "Content-Type is missing; allowed is application/offset+octet-stream",
+                       "Content-Type");
     const Uploads::Appended appended = service.uploads().append(
         request.parameters.at("id"), length_header(request, "Upload-Offset"), request.read_body);
     HttpReply reply = tus_reply(204).with("Upload-Offset", std::to_string(appended.offset));

@@ -1,6 +1,8 @@
 #include "server/jobs/bake_request.h"
 
 #include <algorithm>
+#include <array>
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
@@ -47,27 +49,27 @@ Resolved resolve(Sql& sql, const std::string& value, const std::string& kind, co
                       field)
             .at("/" + field);
     }
-    if (sql.rows("SELECT 1 FROM blobs WHERE sha256 = ?", {resolved.digest}).empty())
-        throw Refusal(Refused::unprocessable,
-                      field + " asks for sha256:" + resolved.digest + ", which is not stored; send it first", field)
-            .at("/" + field);
     return resolved;
 }
 
+struct FileField {
+    const char* name;
+    const char* kind;
+    std::optional<std::string> BakeRequest::*value;
+};
+
+constexpr std::array<FileField, 4> file_fields{{{"hair", "model", &BakeRequest::hair},
+                                                {"environment", "environment", &BakeRequest::environment},
+                                                {"occluder", "mesh", &BakeRequest::occluder},
+                                                {"receiver", "mesh", &BakeRequest::receiver}}};
+
 void resolve_files(Sql& sql, BakeRequest& request, Json& names) {
-    struct File {
-        const char* field;
-        const char* kind;
-        std::optional<std::string>* value;
-    };
-    for (const File& file : {File{"hair", "model", &request.hair},
-                             {"environment", "environment", &request.environment},
-                             {"occluder", "mesh", &request.occluder},
-                             {"receiver", "mesh", &request.receiver}}) {
-        if (!*file.value) continue;
-        const Resolved resolved = resolve(sql, **file.value, file.kind, file.field);
-        *file.value = "sha256:" + resolved.digest;
-        if (!resolved.name.is_null()) names[file.field] = resolved.name;
+    for (const FileField& file : file_fields) {
+        std::optional<std::string>& value = request.*file.value;
+        if (!value) continue;
+        const Resolved resolved = resolve(sql, *value, file.kind, file.name);
+        value = "sha256:" + resolved.digest;
+        if (!resolved.name.is_null()) names[file.name] = resolved.name;
     }
 }
 
@@ -81,6 +83,22 @@ int take_priority(Json& body) {
                       "priority is " + value.dump().substr(0, 40) + "; allowed is an integer from -10 to 10",
                       "priority");
     return value.get<int>();
+}
+
+/// What is computed needs its files; what is stored does not.
+void check_inputs_stored(Sql& sql, const BakeRequest& request, const StagePlan& stage) {
+    if (!sql.rows("SELECT 1 FROM stages WHERE key = ? AND state = 'done'", {stage.key}).empty()) return;
+    for (const FileField& file : file_fields) {
+        const std::optional<std::string>& value = request.*file.value;
+        if (!value) continue;
+        const std::string digest = value->substr(std::strlen("sha256:"));
+        if (!std::count(stage.inputs.begin(), stage.inputs.end(), digest)) continue;
+        if (sql.rows("SELECT 1 FROM blobs WHERE sha256 = ?", {digest}).empty())
+            throw Refusal(Refused::unprocessable,
+                          std::string(file.name) + " asks for " + *value + ", which is not stored; send it first",
+                          file.name)
+                .at(std::string("/") + file.name);
+    }
 }
 
 }  // namespace
@@ -104,14 +122,15 @@ AskedBake read_bake_request(Sql& sql, const std::string& text) {
     return asked;
 }
 
-BakePlan plan_bake(const AskedBake& asked) {
+BakePlan plan_bake(Sql& sql, const AskedBake& asked) {
     BakePlan plan = plan_bake(asked.request);
     plan.names = asked.names;
     plan.priority = asked.priority;
+    for (const StagePlan* stage : plan.stages()) check_inputs_stored(sql, asked.request, *stage);
     return plan;
 }
 
-std::string stored_digest(Sql& sql, const std::string& value, const std::string& kind, const std::string& field) {
+std::string named_digest(Sql& sql, const std::string& value, const std::string& kind, const std::string& field) {
     return resolve(sql, value, kind, field).digest;
 }
 

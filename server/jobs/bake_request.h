@@ -15,13 +15,13 @@ struct AskedBake {
 };
 
 /// Reads the request's JSON (config/request.schema.json, plus "priority" from -10 to 10): defaults are filled in, names
-/// become digests, digests must be stored. A path is refused. In the caller's transaction. Throws Refusal naming the
-/// field.
+/// become digests. A path is refused. In the caller's transaction. Throws Refusal naming the field.
 AskedBake read_bake_request(Sql& sql, const std::string& text);
 
-BakePlan plan_bake(const AskedBake& asked);
+/// Throws Refusal naming the field whose file a stage needs that is not stored, when the file is not stored either.
+BakePlan plan_bake(Sql& sql, const AskedBake& asked);
 
 /// The digest that "sha256:..." or "name:..." stands for; `kind` is that of names. Throws Refusal naming `field`.
-std::string stored_digest(Sql& sql, const std::string& value, const std::string& kind, const std::string& field);
+std::string named_digest(Sql& sql, const std::string& value, const std::string& kind, const std::string& field);
 
 }  // namespace hairbake

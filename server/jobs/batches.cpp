@@ -56,7 +56,7 @@ std::string text(const Json& body, const char* field) {
 /// The affected bakes' requests and names: the newest for each model and set of settings, as the digest of the new
 /// request tells doubles apart anyway.
 std::vector<SqlRow> affected(Sql& sql, const Json& body) {
-    const std::string select = "SELECT request, id FROM bakes WHERE hair IS NOT NULL AND ";
+    const std::string select = "SELECT request, names FROM bakes WHERE hair IS NOT NULL AND ";
     std::vector<SqlRow> rows;
     if (body.contains("bakes")) {
         for (const std::string& id : strings(body, "bakes")) {
@@ -66,16 +66,18 @@ std::vector<SqlRow> affected(Sql& sql, const Json& body) {
         }
     } else if (body.contains("models")) {
         for (const std::string& model : strings(body, "models")) {
-            const std::string digest = stored_digest(sql, model, "model", "models");
+            const std::string digest = named_digest(sql, model, "model", "models");
             const auto found = sql.rows(select + "hair = ? ORDER BY seq DESC LIMIT 1", {digest});
             if (found.empty()) refuse("models", "the model " + model.substr(0, 80) + " was never baked");
             rows.push_back(found[0]);
         }
     } else if (body.contains("replaces")) {
-        const std::string digest = stored_digest(sql, text(body, "replaces"), "environment", "replaces");
+        const std::string digest = named_digest(sql, text(body, "replaces"), "environment", "replaces");
         rows = sql.rows(select + "environment = ? ORDER BY seq", {digest});
     } else {
-        rows = sql.rows(select + "json_extract(names, '$.environment.path') = ? ORDER BY seq", {text(body, "name")});
+        rows = sql.rows(
+            select + "id IN (SELECT bake FROM bake_names WHERE field = 'environment' AND path = ?) ORDER BY seq",
+            {text(body, "name")});
     }
     if (rows.empty()) refuse(body.contains("name") ? "name" : "replaces", "no bake of a hair model was made under it");
     if (rows.size() > most_bakes) throw Refusal(Refused::unprocessable, "more than 100000 bakes are affected");
@@ -90,7 +92,12 @@ BakePlan plan_again(Sql& sql, const SqlRow& old, const Json& body) {
         request["irradiance"].merge_patch(body["irradiance"]);
     }
     if (body.contains("priority")) request["priority"] = body["priority"];
-    return plan_bake(read_bake_request(sql, request.dump()));
+    BakePlan plan = plan_bake(sql, read_bake_request(sql, request.dump()));
+    Json names = Json::parse(old.text(1));  // hair and meshes are those that the names meant
+    names.erase("environment");
+    names.update(Json::parse(plan.names));
+    plan.names = names.dump();
+    return plan;
 }
 
 bool stored(Sql& sql, const std::string& stage) {

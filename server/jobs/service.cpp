@@ -77,12 +77,13 @@ void Service::look_after() {
         }
 }
 
-std::unique_ptr<IncomingFile> Service::receive(std::uint64_t expected_bytes) {
+std::unique_ptr<IncomingFile> Service::receive(std::uint64_t expected_bytes, const std::string& digest) {
     if (expected_bytes > settings_.blob_bytes)
         throw Refusal(Refused::too_large, "the body is " + std::to_string(expected_bytes) +
                                               " bytes long; allowed is up to " + std::to_string(settings_.blob_bytes));
     const std::uint64_t room = settings_.budget_bytes - std::min(settings_.budget_bytes, expected_bytes);
-    if (!evict(database_, store_, room))
+    const bool known = is_digest(digest) && store_.size_of(digest);  // then nothing more will lie here
+    if (!known && !evict(database_, store_, room))
         throw Refusal(Refused::full, "the store's budget of " + std::to_string(settings_.budget_bytes) +
                                          " bytes is used up by what live bakes and names need");
     return std::make_unique<IncomingFile>(store_.incoming_folder(), settings_.blob_bytes);
@@ -102,6 +103,11 @@ OpenBlob Service::open_blob(const std::string& digest) try {
     throw Refusal(Refused::busy, std::string(lost.what()) + "; a result is baked again, an input must be sent again");
 }
 
+Catalog::Added Service::add_input(const std::string& kind, const std::string& digest) {
+    if (store_.size_of(digest)) open_blob(digest);  // facts are kept for good: not those of spoiled bytes
+    return catalog_.add(kind, digest);
+}
+
 /// A build farm that asks again: nothing is written, and nobody waits for who writes.
 std::optional<Service::Answer> Service::answer_if_done(const std::string& body) {
     std::optional<Answer> answer;
@@ -117,7 +123,7 @@ Service::Answer Service::submit(const std::string& body) {
     if (std::optional<Answer> known = answer_if_done(body)) return *known;
     const auto held = database_.lock();  // what was found stored stays stored until it is queued
     BakePlan plan;
-    database_.read([&](Sql& sql) { plan = plan_bake(read_bake_request(sql, body)); });
+    database_.read([&](Sql& sql) { plan = plan_bake(sql, read_bake_request(sql, body)); });
     const Submitted submitted = queue_.submit({plan}).at(0);
     return {submitted.id, submitted.state, bakes_.get(submitted.id)};
 }

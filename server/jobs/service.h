@@ -33,12 +33,16 @@ public:
     ~Service();
 
     // ---- blobs
-    /// A file to receive a body into. Throws Refusal(full) when `expected_bytes` cannot be taken.
-    std::unique_ptr<IncomingFile> receive(std::uint64_t expected_bytes);
+    /// A file to receive a body into, of that digest where it is known. Makes room for it; throws Refusal(full) when
+    /// `expected_bytes` cannot be taken.
+    std::unique_ptr<IncomingFile> receive(std::uint64_t expected_bytes, const std::string& digest = {});
     /// Makes the received file a blob; returns whether it is new.
     bool store_blob(IncomingFile& file, const std::string& expected_digest);
     /// Opens a blob, verified. A spoiled one starts its stages again and is Refusal(busy) for a result, not_found else.
     OpenBlob open_blob(const std::string& digest);
+
+    /// Catalog::add() of verified bytes; throws as open_blob() too.
+    Catalog::Added add_input(const std::string& kind, const std::string& digest);
 
     // ---- bakes
     /// {"id", "state"...} as Bakes::get, and whether it was done before.
