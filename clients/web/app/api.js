@@ -19,6 +19,9 @@ async function problem_of(reply) {
     return new Problem(reply.status, body.detail || `The service answered ${reply.status}.`, body.field || '');
 }
 
+// What asking again does not change; all else (a proxy's 429, a daemon that starts anew) passes.
+const final_statuses = new Set([400, 401, 403, 404, 405, 410, 422]);
+
 function pause(milliseconds, signal) {
     return new Promise(resolve => {
         const timer = setTimeout(resolve, milliseconds);
@@ -64,13 +67,19 @@ export function make_api(on_locked) {
             return `/v1/bakes/${encodeURIComponent(bake)}/files/${encodeURIComponent(name)}`;
         },
 
-        /** Asks again and again, by ETag, until `signal` is aborted or on_value returns true. */
+        /**
+         * Asks again and again, by ETag, until `signal` is aborted, on_value returns true, or asking again would change
+         * nothing. on_problem gets null when what was wrong has passed.
+         */
         async watch(path, every_ms, on_value, on_problem, signal) {
             let tag = null;
+            let lost = false;
             while (!signal.aborted) {
                 try {
                     const headers = tag ? { 'If-None-Match': tag } : {};
                     const reply = await ask(path, { headers, cache: 'no-store', signal });
+                    if (lost && !signal.aborted) on_problem(null);
+                    lost = false;
                     if (reply.status !== 304) {
                         tag = reply.headers.get('ETag');
                         const value = await reply.json();
@@ -79,7 +88,8 @@ export function make_api(on_locked) {
                 } catch (problem) {
                     if (signal.aborted) return;
                     on_problem(problem);
-                    if (problem.status >= 400 && problem.status < 500) return; // asking again changes nothing
+                    lost = true;
+                    if (final_statuses.has(problem.status)) return;
                 }
                 await pause(document.hidden ? 5 * every_ms : every_ms, signal);
             }
@@ -95,6 +105,7 @@ export function make_api(on_locked) {
                     request: value,
                 })),
             }));
+            api.promise.catch(() => (api.promise = null)); // the next one asks again
             return api.promise;
         },
     };

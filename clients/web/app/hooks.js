@@ -37,7 +37,7 @@ export function use_watch(path, every_ms, ended = () => false, round = 0) {
     return state;
 }
 
-/** Every item of a list that comes in pages (at most `most`), asked for once. */
+/** Every item of a list that comes in pages, or as many as are worth showing, asked for once. */
 export async function all_pages(api, path, key, most = 1000) {
     const items = [];
     for (let cursor = ''; items.length < most;) {
@@ -49,14 +49,14 @@ export async function all_pages(api, path, key, most = 1000) {
     return items;
 }
 
-/** { items, problem, reload } of all pages of a list. */
-export function use_list(path, key) {
+/** { items, problem, reload } of all pages of a list; `most` as for all_pages. */
+export function use_list(path, key, most = undefined) {
     const { api } = use_app();
     const [state, set_state] = useState({ items: null });
     const [round, set_round] = useState(0);
     useEffect(() => {
         let live = true;
-        all_pages(api, path, key).then(
+        all_pages(api, path, key, most).then(
             items => live && set_state({ items }),
             problem => live && set_state({ items: [], problem }),
         );

@@ -46,7 +46,8 @@ export function CancelButton({ bake, label, on_change }) {
 function AgainButton({ bake, on_change }) {
     const { api } = use_app();
     const [problem, set_problem] = useState(null);
-    const again = () => api.post('/v1/bakes', bake.request).then(on_change, set_problem);
+    const again = () =>
+        api.post('/v1/bakes', { ...bake.request, priority: bake.priority }).then(on_change, set_problem);
     return html`<p><button class="small" onClick=${again}>Bake again</button></p><${ProblemNote} problem=${problem} />`;
 }
 

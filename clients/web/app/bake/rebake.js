@@ -24,35 +24,37 @@ function Forecast({ forecast }) {
 /** request: the body of POST /v1/rebakes, or null while it is not complete. */
 export function Rebake({ request, label = 'Re-bake' }) {
     const { api, announce } = use_app();
-    const [state, set_state] = useState({});
+    const [found, set_state] = useState({});
     const body = request && JSON.stringify(request);
+    const state = found.body === body ? found : {}; // not what another request would take
     useEffect(() => {
-        set_state({});
         if (!body) return undefined;
         let live = true;
         api.post('/v1/rebakes', request, '?dry_run=1').then(
             forecast => {
                 if (!live) return;
-                set_state({ forecast });
+                set_state({ body, forecast });
                 announce(forecast_words(forecast));
             },
-            problem => live && set_state({ problem }),
+            problem => live && set_state({ body, problem }),
         );
         return () => (live = false);
     }, [body]);
     const confirm = async () => {
+        set_state({ ...state, busy: true }); // a second click would make a second batch
         try {
             const { id } = await api.post('/v1/rebakes', request);
             location.hash = `#/batches/${id}`;
         } catch (problem) {
-            set_state({ ...state, problem });
+            set_state({ ...state, problem, busy: false });
         }
     };
     if (!request) return null;
     return html`<section aria-label="What it takes">
         <${ProblemNote} problem=${state.problem} />
         ${!state.forecast && !state.problem && html`<p aria-busy="true">Counting what is reused</p>`}
-        ${state.forecast && html`<${Forecast} forecast=${state.forecast} /><button onClick=${confirm}>
+        ${state.forecast && html`<${Forecast} forecast=${state.forecast} /><button onClick=${confirm}
+            disabled=${state.busy} aria-busy=${state.busy ? 'true' : null}>
             ${label} ${count_words(state.forecast.bakes, 'bake')}</button>`}
     </section>`;
 }

@@ -34,6 +34,8 @@ export default function BakesPage() {
                 <option value="">all</option>${states.map(one => html`<option key=${one}>${one}</option>`)}
             </select></label>
             <a role="button" class="small" href="#/bake">New bake</a>
+            ${chosen.size === 2 && html`<a role="button" class="small" href=${`#/view/${[...chosen].join('/')}`}>
+                Compare in the viewer</a>`}
             ${chosen.size > 0 && html`<a role="button" class="small"
                 href=${`#/rebake?bakes=${[...chosen].join(',')}`}>Re-bake ${count_words(chosen.size, 'bake')}</a>`}
         </div>

@@ -81,7 +81,7 @@ function BakeAgain({ name, bakes }) {
 function Followers({ kind, name }) {
     const models = use_inputs('model');
     const environments = use_inputs('environment');
-    const { items, problem } = use_list(`/v1/bakes?name=${encodeURIComponent(name.path)}`, 'bakes');
+    const { items, problem } = use_list(`/v1/bakes?name=${encodeURIComponent(name.path)}`, 'bakes', Infinity);
     const bakes = useMemo(() => (items ?? []).filter(bake => asked_by(bake, name).length > 0), [items]);
     const old = bakes.filter(bake => asked_by(bake, name).some(field => bake.names[field].version < name.version));
     if (problem) return html`<${ProblemNote} problem=${problem} />`;
