@@ -53,7 +53,8 @@ export function ViewerPage({ left, right, api }) {
     useEffect(() => view.current?.set_display_stops(stops), [stops]);
 
     const names = bakes.map(bake => `${bake.id.slice(0, 8)}, ${bake.maps.count - 1} specular maps`);
-    const ready = bakes.length > 0;
+    const ready = bakes.length > 0,
+        edited = bakes[sides[0].bake]; // the one on the left is what an edit starts from
     return html`<link rel="stylesheet" href=${css} />
         <section class="viewer" aria-label="Viewer">
             <div class="viewer-stage" ref=${stage}>
@@ -70,7 +71,7 @@ export function ViewerPage({ left, right, api }) {
                 <div class="viewer-buttons">
                     <button type="button" disabled=${!ready} onClick=${() => view.current.frame_hair()}>Frame</button>
                     <button type="button" disabled=${!ready}
-                        onClick=${() => save_screenshot(view.current, canvas.current, left)}>
+                        onClick=${() => save_screenshot(view.current, canvas.current, edited.id)}>
                         Screenshot
                     </button>
                 </div>
@@ -82,18 +83,18 @@ export function ViewerPage({ left, right, api }) {
                     html`
                     <${SidesPanel} sides=${sides} names=${names} on=${set_sides} />
                     <${SkyPanel} edit=${edit} on=${set_edit} />
-                    <${LightsPanel} lights=${edit.lights} level=${bakes[0].maps.level} way=${way}
+                    <${LightsPanel} lights=${edit.lights} level=${edited.maps.level} way=${way}
                         ways=${ways_of(bakes)} on_way=${set_way} on=${lights => set_edit({ ...edit, lights })} />
                     <fieldset>
                         <legend>Bake this lighting</legend>
-                        <${BakeOrder} api=${api} old=${left} label="Bake this lighting" disabled=${!is_edited(edit)}
-                            request=${() => compose_request(bakes[0].request, edit)} />
+                        <${BakeOrder} api=${api} old=${edited.id} label="Bake this lighting" disabled=${!is_edited(edit)}
+                            request=${() => compose_request(edited.request, edit)} />
                         <button type="button" class="secondary" disabled=${!is_edited(edit)}
                             onClick=${() => set_edit(no_edit())}>
                             Undo the edit
                         </button>
                     </fieldset>
-                    <${HairPanel} look=${look} exponent=${bakes[0].maps.exponent} on=${set_look} />
+                    <${HairPanel} look=${look} exponent=${edited.maps.exponent} on=${set_look} />
                     <fieldset>
                         <legend>Screen</legend>
                         <${Slider} label="Brightness of the picture alone" value=${stops} min="-12" max="12" step="0.1"

@@ -69,11 +69,11 @@ function ball_of_hair(random) {
 before(async () => {
     const random = generator(11),
         hair = ball_of_hair(random);
-    const maps = count => random_maps(random, 8, count, { scale: 1, exponent: 64 }).files;
+    const maps = (count, exponent = 64) => random_maps(random, 8, count, { scale: 1, exponent }).files;
     const request = { irradiance: { rotation_deg: [0, 30, 0], exposure_stops: 1, tint: [1, 1, 1], lights: [] } };
     const bakes = bake_service({
         first: { files: { ...hair, ...maps(34) }, request },
-        second: { files: { ...hair, ...maps(10) }, request },
+        second: { files: { ...hair, ...maps(10, 20) }, request: { irradiance: { rotation_deg: [0, 10, 0] } } },
         unread: { files: { 'transmittance.npy': Buffer.alloc(1) }, request: { ...request, outputs: ['npy'] } },
         bald: { files: { ...hair, ...maps(34) }, request: { hair: null } },
         broken: { files: { ...hair, ...maps(34), 'strands.bin': Buffer.alloc(100) } },
@@ -217,6 +217,18 @@ test('The edited lighting is shown at once and baked as a request: turned, expos
             },
         },
     ]);
+});
+
+test('What is baked is the lighting of the bake that is shown, not of the first one', async () => {
+    await open('first/second');
+    await page.getByText('Exponent 64, as baked').waitFor();
+    await page.getByLabel('Split').selectOption('One picture');
+    await page.getByRole('combobox', { name: 'Bake', exact: true }).selectOption({ index: 1 });
+    await page.getByText('Exponent 20, as baked').waitFor();
+    await slider('Turn about the vertical').fill('60');
+    await page.getByRole('button', { name: 'Bake this lighting' }).click();
+    assert.equal(await page.getByRole('link', { name: 'compare' }).getAttribute('href'), '#/view/second/new');
+    assert.deepEqual(posted[0].irradiance.rotation_deg, [0, 70, 0]);
 });
 
 test('A refusal of the service is shown as text', async () => {
