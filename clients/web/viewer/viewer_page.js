@@ -1,8 +1,7 @@
 // The page that shows hair under a bake's light while the light is edited.
 //
 //   ViewerPage({ left, right, api }): left and right are ids of bakes (right may be missing);
-//   api.file_url(id, name) is the address of a bake's file; api.json(path) gets JSON, api.post(path, object) posts it:
-//   both take paths from the root ("/v1/bakes/...") and throw an Error in words when the service refuses.
+//   api is that of app/api.js: its failures are Errors in words, with the status (0: no answer).
 //
 // What it holds on the card, its loop and what it is fetching end when it is unmounted.
 import { html, useEffect, useRef, useState } from '../vendor/preact.js';

@@ -18,23 +18,18 @@ const html = `<!doctype html><html lang="en"><head><meta charset="utf-8"><title>
 <body><main class="container-fluid"><h1>Viewer</h1><div id="place"></div></main>
 <script type="module" src="/mount.js"></script></body></html>`;
 const mount = `import { html, render } from '/vendor/preact.js';
+import { make_api } from '/app/api.js';
 import { ViewerPage } from '/viewer/viewer_page.js';
 const place = document.querySelector('#place');
-const body = async reply => {
-    const object = await reply.json();
-    if (!reply.ok) throw new Error(object.detail);
-    return object;
-};
-const api = {
-    file_url: (id, name) => '/v1/bakes/' + id + '/files/' + name,
-    json: async path => body(await fetch(path)),
-    post: async (path, object) => body(await fetch(path, { method: 'POST', body: JSON.stringify(object) })),
-};
+const api = make_api(() => (window.locked = true));
 const [left, right] = location.hash.slice(2).split('/');
 render(html\`<\${ViewerPage} left=\${left} right=\${right} api=\${api} />\`, place);
 window.unmount = () => render(null, place);`;
 
+const going = json({ id: 'new', state: 'running' }),
+    gone = json({ id: 'new', state: 'done' });
 let site, server, browser, page, posted, refusal;
+let polls; // answers about the bake that was asked for; the last one stays
 
 /** Curls round a ball: something that can be recognised in a picture. */
 function ball_of_hair(random) {
@@ -78,17 +73,15 @@ before(async () => {
         bald: { files: { ...hair, ...maps(34) }, request: { hair: null } },
         broken: { files: { ...hair, ...maps(34), 'strands.bin': Buffer.alloc(100) } },
     });
-    let asked = 0;
     const answer = (method, path, body) => {
         if (path === '/') return { type: 'text/html', body: html };
         if (path === '/mount.js') return { type: 'text/javascript', body: mount };
         if (method === 'POST' && refusal) return json({ detail: refusal }, 422);
         if (method === 'POST') {
             posted.push(JSON.parse(body));
-            asked = 0;
             return json({ id: 'new', state: 'queued' }, 202);
         }
-        if (path === '/v1/bakes/new') return json({ id: 'new', state: asked++ ? 'done' : 'running' });
+        if (path === '/v1/bakes/new') return polls.length > 1 ? polls.shift() : polls[0];
         return bakes(method, path);
     };
     mkdirSync(pictures, { recursive: true });
@@ -104,9 +97,10 @@ after(async () => {
 beforeEach(() => {
     posted = [];
     refusal = null;
+    polls = [going, gone];
 });
 afterEach(async () => {
-    const problems = page.problems.filter(problem => !/status of 4\d\d/.test(problem)); // answers that a test asks for
+    const problems = page.problems.filter(problem => !/status of [45]\d\d/.test(problem)); // answers that a test asks for
     await page.close();
     assert.deepEqual(problems, [], "on the browser's console");
 });
@@ -237,6 +231,27 @@ test('A refusal of the service is shown as text', async () => {
     await slider('Turn about the vertical').fill('60');
     await page.getByRole('button', { name: 'Bake this lighting' }).click();
     await page.getByText(`It was not baked: ${hostile}`).waitFor();
+});
+
+test('A bake is followed through lost answers, until the service refuses', async () => {
+    await open('first');
+    polls = [json({ detail: 'Not now.' }, 503)];
+    await slider('Turn about the vertical').fill('60');
+    const bake = page.getByRole('button', { name: 'Bake this lighting' });
+    await bake.click();
+    await page.getByText('The new bake is queued. Not now. It is asked again.').waitFor();
+    polls = [json({ detail: 'Too many.' }, 429)];
+    await page.getByText('The new bake is queued. Too many. It is asked again.').waitFor();
+    assert.ok(await bake.isDisabled());
+    polls = [going];
+    await page.getByText('The new bake is running.', { exact: true }).waitFor();
+    polls = [gone];
+    await page.getByRole('link', { name: 'open the new bake' }).waitFor();
+    assert.ok(await bake.isEnabled());
+    polls = [json({ detail: 'no such bake' }, 404)];
+    await bake.click();
+    await page.getByText('The new bake can be followed no longer: no such bake').waitFor();
+    assert.ok(await bake.isEnabled());
 });
 
 test('At most eight lights are added, and a light can be removed', async () => {
