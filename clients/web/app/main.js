@@ -32,12 +32,15 @@ function Navigation({ current }) {
     </header>`;
 }
 
+/** Routes of one key are one page: the viewer keeps its camera, edit and strands when it shows other bakes. */
+const key_of = ({ path, query }) => JSON.stringify(path[0] === 'view' ? ['view'] : [path, query]);
+
 /** The focus goes to a new page's heading, so that a screen reader tells where one is. */
 function Page({ route, first }) {
     const page = page_of(route.path);
     const [state, set_state] = useState({});
     const heading = useRef(null);
-    const key = JSON.stringify(route);
+    const key = key_of(route);
     useEffect(() => {
         document.title = `${page?.title ?? 'Not found'} · hairbake`;
         if (!first) heading.current?.focus();

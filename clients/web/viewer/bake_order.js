@@ -4,8 +4,11 @@ import { html, useEffect, useState } from '../vendor/preact.js';
 const pause_ms = 700;
 const ended = ['done', 'failed', 'cancelled'];
 
-/** `request` gives the request when the button is pressed; it may throw in words. `old` is the bake shown now. */
-export function BakeOrder({ api, request, old, label, disabled = false }) {
+/**
+ * `request` gives the request when the button is pressed; it may throw in words. `old` is the bake shown now.
+ * `on_asked` is told the new one's id.
+ */
+export function BakeOrder({ api, request, old, label, disabled = false, on_asked = () => {} }) {
     const [bake, set_bake] = useState(null);
     const [problem, set_problem] = useState('');
     const [lost, set_lost] = useState(null); // why the last answer did not come
@@ -14,7 +17,9 @@ export function BakeOrder({ api, request, old, label, disabled = false }) {
         set_bake(null);
         set_lost(null);
         try {
-            set_bake(await api.post('/v1/bakes', request()));
+            const view = await api.post('/v1/bakes', request());
+            on_asked(view.id);
+            set_bake(view);
         } catch (error) {
             set_problem(`It was not baked: ${error.message}`);
         }

@@ -17,8 +17,8 @@ const hiding = {
     average: 'A alone',
 };
 
-/** `sides`: one or two sides of hair_view.js; `names`: what to call each bake. */
-export function SidesPanel({ sides, names, on }) {
+/** `sides`: one or two sides of hair_view.js; `names`: what to call each bake; `is_edited`: whether the lighting is. */
+export function SidesPanel({ sides, names, is_edited, on }) {
     const two = sides.length === 2;
     const split = !two ? 'one' : sides[1].bake === sides[0].bake ? 'same' : 'both';
     const choices = {
@@ -32,7 +32,8 @@ export function SidesPanel({ sides, names, on }) {
         <legend>What is shown</legend>
         <${Choice} label="Split" value=${split} options=${choices} on=${set_split} />
         ${sides.map(
-            (side, k) => html`<${SidePanel} key=${k} side=${side} names=${names} on=${changed => change(k, changed)}
+            (side, k) => html`<${SidePanel} key=${k} side=${side} names=${names}
+            is_edited=${is_edited} on=${changed => change(k, changed)}
             where=${two ? ['Left: ', 'Right: '][k] : ''} />`,
         )}
     </fieldset>`;
@@ -47,7 +48,7 @@ function split_sides([first, second], way) {
     ];
 }
 
-function SidePanel({ side, names, where, on }) {
+function SidePanel({ side, names, is_edited, where, on }) {
     const bakes = Object.fromEntries(names.map((name, i) => [i, name]));
     return html`
         ${
@@ -58,7 +59,9 @@ function SidePanel({ side, names, where, on }) {
         <${Choice} label=${`${where}Part`} value=${side.part} options=${parts} on=${part => on({ ...side, part })} />
         <${Tick} label=${`${where}Times A (what the hair lets through)`} checked=${side.with_transmittance}
             disabled=${side.part === 'transmittance'}
-            on=${with_transmittance => on({ ...side, with_transmittance })} />`;
+            on=${with_transmittance => on({ ...side, with_transmittance })} />
+        <${Tick} label=${`${where}As baked, without the edit`} checked=${side.as_baked} disabled=${!is_edited}
+            on=${as_baked => on({ ...side, as_baked })} />`;
 }
 
 export function HairPanel({ look, exponent, on }) {

@@ -13,9 +13,16 @@ export { most_lights };
 export const default_look = { albedo: 0.6, color: [0.78, 0.52, 0.3], specular: 0.06 };
 
 /**
- * What a side shows. `part`: all, diffuse, specular or transmittance; `hidden_by`: what hides lights that were added.
+ * What a side shows. `part`: all, diffuse, specular or transmittance; `hidden_by`: what hides lights that were added;
+ * `as_baked`: without the edit.
  */
-export const default_side = { bake: 0, part: 'all', with_transmittance: true, hidden_by: 'automatic' };
+export const default_side = {
+    bake: 0,
+    part: 'all',
+    with_transmittance: true,
+    hidden_by: 'automatic',
+    as_baked: false,
+};
 
 export class HairView {
     camera = new OrbitCamera();
@@ -214,7 +221,7 @@ export class HairView {
 
     #set_uniforms(uniforms, side, defines, linear) {
         const { albedo, color, specular } = this.#look,
-            edit = this.#edit;
+            edit = side.as_baked ? no_edit() : this.#edit;
         const set = (name, value) => (uniforms[name].value = value);
         const kd = side.part === 'specular' ? 0 : albedo / Math.PI ** 2,
             ks = side.part === 'diffuse' ? 0 : specular;

@@ -1,6 +1,7 @@
 // The page that shows hair under a bake's light while the light is edited.
 //
-//   ViewerPage({ left, right, api }): left and right are ids of bakes (right may be missing);
+//   ViewerPage({ left, right, api }): left and right are ids of bakes (right may be missing); with others, camera, look
+//   and edit stay, and what they share with those before is not fetched again;
 //   api is that of app/api.js: its failures are Errors in words, with the status (0: no answer).
 //
 // What it holds on the card, its loop and what it is fetching end when it is unmounted.
@@ -27,6 +28,9 @@ export function ViewerPage({ left, right, api }) {
     const [sides, set_sides] = useState([default_side]);
     const [look, set_look] = useState(default_look);
     const [edit, set_edit] = useState(no_edit());
+    const orders = useRef(new Map()); // id of a bake that was asked for here -> the edit that is in it
+    const now = useRef({});
+    now.current = { sides, edit };
     const [stops, set_stops] = useState(0);
     const [way, set_way] = useState('automatic');
 
@@ -34,13 +38,20 @@ export function ViewerPage({ left, right, api }) {
     useEffect(() => {
         const abort = new AbortController();
         const show = loaded => {
-            const together = loaded.length > 1 ? [default_side, { ...default_side, bake: 1 }] : [default_side];
+            // What an edit was baked into is not edited once more.
+            const holds_edit = ({ id }) => orders.current.get(id) === now.current.edit;
+            const two = loaded.length > 1,
+                lighting = !two && holds_edit(loaded[0]) ? no_edit() : now.current.edit;
+            const first = now.current.sides[0];
+            const together = loaded.map((bake, i) => ({ ...first, bake: i, as_baked: two && holds_edit(bake) }));
             view.current.set_bakes(loaded);
             view.current.set_sides(together);
-            view.current.frame_hair();
+            view.current.set_lighting(lighting);
             set_sides(together);
+            set_edit(lighting);
             set_bakes(loaded);
-            set_stops(view.current.automatic_stops());
+            if (!bakes.some(({ strands }) => strands === loaded[0].strands)) view.current.frame_hair();
+            if (!bakes.some(({ id }) => id === loaded[0].id)) set_stops(view.current.automatic_stops());
         };
         if (view.current)
             load_all([left, right].filter(Boolean), api, bakes, abort.signal, { set_status, set_problem, show });
@@ -61,7 +72,7 @@ export function ViewerPage({ left, right, api }) {
                     aria-describedby="viewer-hint">
                 </canvas>
                 ${ready && sides.length > 1 && html`<span class="viewer-divider"></span>`}
-                ${ready && html`<${Captions} sides=${sides} names=${names} />`}
+                ${ready && html`<${Captions} sides=${sides} names=${names} is_edited=${is_edited(edit)} />`}
                 <p class="viewer-status" role="status">${status}</p>
                 ${problem && html`<${Problem} problem=${problem} api=${api} />`}
             </div>
@@ -80,14 +91,15 @@ export function ViewerPage({ left, right, api }) {
                 ${
                     ready &&
                     html`
-                    <${SidesPanel} sides=${sides} names=${names} on=${set_sides} />
+                    <${SidesPanel} sides=${sides} names=${names} is_edited=${is_edited(edit)} on=${set_sides} />
                     <${SkyPanel} edit=${edit} on=${set_edit} />
                     <${LightsPanel} lights=${edit.lights} level=${edited.maps.level} way=${way}
                         ways=${ways_of(bakes)} on_way=${set_way} on=${lights => set_edit({ ...edit, lights })} />
                     <fieldset>
                         <legend>Bake this lighting</legend>
                         <${BakeOrder} api=${api} old=${edited.id} label="Bake this lighting" disabled=${!is_edited(edit)}
-                            request=${() => compose_request(edited.request, edit)} />
+                            request=${() => compose_request(edited.request, edit)}
+                            on_asked=${id => orders.current.set(id, edit)} />
                         <button type="button" class="secondary" disabled=${!is_edited(edit)}
                             onClick=${() => set_edit(no_edit())}>
                             Undo the edit
@@ -168,11 +180,12 @@ async function save_screenshot(view, canvas, id) {
     setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
-function Captions({ sides, names }) {
+function Captions({ sides, names, is_edited }) {
     const parts = { all: '', diffuse: ', diffuse', specular: ', specular', transmittance: ', A' };
     const text = side =>
         names[side.bake] +
         parts[side.part] +
+        (is_edited ? (side.as_baked ? ', as baked' : ', edited') : '') +
         (side.with_transmittance || side.part === 'transmittance' ? '' : ', without A');
     return html`<div class="viewer-captions">${sides.map(side => html`<span>${text(side)}</span>`)}</div>`;
 }

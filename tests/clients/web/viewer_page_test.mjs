@@ -22,13 +22,18 @@ import { make_api } from '/app/api.js';
 import { ViewerPage } from '/viewer/viewer_page.js';
 const place = document.querySelector('#place');
 const api = make_api(() => (window.locked = true));
-const [left, right] = location.hash.slice(2).split('/');
-render(html\`<\${ViewerPage} left=\${left} right=\${right} api=\${api} />\`, place);
+const show = () => {
+    const [left, right] = location.hash.replace(/^#\\/(view\\/)?/, '').split('/');
+    render(html\`<\${ViewerPage} left=\${left} right=\${right} api=\${api} />\`, place);
+};
+addEventListener('hashchange', show);
+show();
 window.unmount = () => render(null, place);`;
 
-const going = json({ id: 'new', state: 'running' }),
-    gone = json({ id: 'new', state: 'done' });
+const sources = { strands: 'first', maps: 'second' }; // what the new bake has in common with older ones
+const going = json({ id: 'new', state: 'running' });
 let site, server, browser, page, posted, refusal;
+let done; // the new bake
 let polls; // answers about the bake that was asked for; the last one stays
 
 /** Curls round a ball: something that can be recognised in a picture. */
@@ -73,6 +78,9 @@ before(async () => {
         bald: { files: { ...hair, ...maps(34) }, request: { hair: null } },
         broken: { files: { ...hair, ...maps(34), 'strands.bin': Buffer.alloc(100) } },
     });
+    const view_of = id => JSON.parse(bakes('GET', `/v1/bakes/${id}`).body);
+    const files = Object.entries(sources).flatMap(([kind, id]) => view_of(id).files.filter(f => f.name.startsWith(kind)));
+    done = json({ ...view_of('first'), id: 'new', files });
     const answer = (method, path, body) => {
         if (path === '/') return { type: 'text/html', body: html };
         if (path === '/mount.js') return { type: 'text/javascript', body: mount };
@@ -82,6 +90,8 @@ before(async () => {
             return json({ id: 'new', state: 'queued' }, 202);
         }
         if (path === '/v1/bakes/new') return polls.length > 1 ? polls.shift() : polls[0];
+        const shared = path.match(/^\/v1\/bakes\/new\/files\/(strands|maps)/);
+        if (shared) return bakes(method, path.replace('new', sources[shared[1]]));
         return bakes(method, path);
     };
     mkdirSync(pictures, { recursive: true });
@@ -97,7 +107,7 @@ after(async () => {
 beforeEach(() => {
     posted = [];
     refusal = null;
-    polls = [going, gone];
+    polls = [going, done];
 });
 afterEach(async () => {
     const problems = page.problems.filter(problem => !/status of [45]\d\d/.test(problem)); // answers that a test asks for
@@ -225,6 +235,33 @@ test('What is baked is the lighting of the bake that is shown, not of the first 
     assert.deepEqual(posted[0].irradiance.rotation_deg, [0, 70, 0]);
 });
 
+test('With another bake beside it camera and edit stay, and what both share is not fetched again', async () => {
+    await open('first');
+    const fetched = [];
+    page.on('request', request => fetched.push(new URL(request.url()).pathname));
+    await page.focus('.viewer canvas');
+    await page.keyboard.press('ArrowLeft');
+    await page.keyboard.press('+');
+    await slider('Albedo').fill('0.9');
+    await slider('Turn about the vertical').fill('60');
+    const before = await picture();
+    await page.getByRole('button', { name: 'Bake this lighting' }).click();
+    await page.getByRole('link', { name: 'compare' }).click();
+    await page.getByText(/^new.*, as baked$/).waitFor(); // the edit is in its maps
+    assert.match(await page.innerText('.viewer-captions'), /first.*, edited/);
+    await picture();
+    await page.goBack();
+    await page.waitForFunction(() => document.querySelectorAll('.viewer-captions span').length === 1);
+    assert.ok((await picture()).equals(before), 'camera, look or edit is another');
+    assert.deepEqual(
+        fetched.filter(path => path.includes('/files/')),
+        ['maps.json', 'maps.f16'].map(name => `/v1/bakes/new/files/${name}`),
+    );
+    await page.getByRole('link', { name: 'open the new bake' }).click();
+    await page.locator('.viewer-captions').getByText('new').waitFor();
+    assert.ok(await page.getByRole('button', { name: 'Bake this lighting' }).isDisabled(), 'it is edited twice');
+});
+
 test('A refusal of the service is shown as text', async () => {
     await open('first');
     refusal = hostile;
@@ -245,7 +282,7 @@ test('A bake is followed through lost answers, until the service refuses', async
     assert.ok(await bake.isDisabled());
     polls = [going];
     await page.getByText('The new bake is running.', { exact: true }).waitFor();
-    polls = [gone];
+    polls = [done];
     await page.getByRole('link', { name: 'open the new bake' }).waitFor();
     assert.ok(await bake.isEnabled());
     polls = [json({ detail: 'no such bake' }, 404)];
