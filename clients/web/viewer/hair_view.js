@@ -12,6 +12,9 @@ export { most_lights };
 /** Light brown hair whose strands send on six tenths of the light diffusely: the defaults of `hairbake render`. */
 export const default_look = { albedo: 0.6, color: [0.78, 0.52, 0.3], specular: 0.06 };
 
+/** The picture's brightness is chosen from -most_stops to most_stops: the sun in a picture of candles and back. */
+export const most_stops = 32;
+
 /**
  * What a side shows. `part`: all, diffuse, specular or transmittance; `hidden_by`: what hides lights that were added;
  * `as_baked`: without the edit.
@@ -149,7 +152,7 @@ export class HairView {
                 luminances.push(0.2126 * pixels[i] + 0.7152 * pixels[i + 1] + 0.0722 * pixels[i + 2]);
         const sorted = Float64Array.from(luminances).sort();
         const tenth = sorted[sorted.length - 1 - Math.floor(sorted.length / 10)];
-        return tenth > 0 ? Math.log2(0.35 / tenth) : 0;
+        return tenth > 0 ? Math.min(Math.max(Math.log2(0.35 / tenth), -most_stops), most_stops) : 0;
     }
 
     /** Buffers and textures on the card: {geometries, textures}. */

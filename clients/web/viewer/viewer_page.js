@@ -10,7 +10,7 @@ import { BakeOrder } from './bake_order.js';
 import { load_bake } from './bake_files.js';
 import { HairPanel, LightsPanel, SidesPanel, SkyPanel } from './controls.js';
 import { Slider } from './fields.js';
-import { HairView, default_look, default_side } from './hair_view.js';
+import { HairView, default_look, default_side, most_stops } from './hair_view.js';
 import { compose_request, is_edited, no_edit } from './lighting_edit.js';
 import { listen_for_orbit } from './orbit_input.js';
 
@@ -108,8 +108,8 @@ export function ViewerPage({ left, right, api }) {
                     <${HairPanel} look=${look} exponent=${edited.maps.exponent} on=${set_look} />
                     <fieldset>
                         <legend>Screen</legend>
-                        <${Slider} label="Brightness of the picture alone" value=${stops} min="-12" max="12" step="0.1"
-                            unit="stops" on=${set_stops} />
+                        <${Slider} label="Brightness of the picture alone" value=${stops} min=${-most_stops}
+                            max=${most_stops} step="0.1" unit="stops" on=${set_stops} />
                         <button type="button" class="secondary"
                             onClick=${() => set_stops(view.current.automatic_stops())}>
                             Automatic

@@ -69,11 +69,12 @@ function ball_of_hair(random) {
 before(async () => {
     const random = generator(11),
         hair = ball_of_hair(random);
-    const maps = (count, exponent = 64) => random_maps(random, 8, count, { scale: 1, exponent }).files;
+    const maps = (count, exponent = 64, scale = 1) => random_maps(random, 8, count, { scale, exponent }).files;
     const request = { irradiance: { rotation_deg: [0, 30, 0], exposure_stops: 1, tint: [1, 1, 1], lights: [] } };
     const bakes = bake_service({
         first: { files: { ...hair, ...maps(34) }, request },
         second: { files: { ...hair, ...maps(10, 20) }, request: { irradiance: { rotation_deg: [0, 10, 0] } } },
+        dim: { files: { ...hair, ...maps(10, 64, 2 ** -20) } },
         unread: { files: { 'transmittance.npy': Buffer.alloc(1) }, request: { ...request, outputs: ['npy'] } },
         bald: { files: { ...hair, ...maps(34) }, request: { hair: null } },
         broken: { files: { ...hair, ...maps(34), 'strands.bin': Buffer.alloc(100) } },
@@ -299,6 +300,14 @@ test('At most eight lights are added, and a light can be removed', async () => {
     await page.getByRole('button', { name: 'Remove light 3' }).click();
     assert.equal(await page.getByRole('button', { name: /Remove light/ }).count(), 7);
     assert.ok(await add.isEnabled());
+});
+
+test('The brightness that is chosen for a dim sky is on the slider', async () => {
+    await open('dim');
+    const brightness = slider('Brightness');
+    const [value, text] = await brightness.evaluate(input => [input.valueAsNumber, input.ariaValueText]);
+    assert.ok(value > 17 && value < 23, `${value} stops for light of 2^-20`);
+    assert.ok(Math.abs(parseFloat(text) - value) <= 0.05, `${text}, and the slider is at ${value}`); // half a step
 });
 
 test("A screenshot is a PNG of the picture's size", async () => {

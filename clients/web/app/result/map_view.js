@@ -6,6 +6,8 @@ import { number_words } from '../words.js';
 import { face_names, layout_of, texel_direction } from './cube.js';
 import { load_maps, srgb_byte } from './map_set.js';
 
+const most_stops = 32; // as in the viewer
+
 function draw(canvas, set, m, layout, stops) {
     const { width, height } = layout;
     canvas.width = width;
@@ -89,7 +91,7 @@ function MapControls({ set, m, set_m, kind, set_kind, stops, set_stops, auto, se
                 onChange=${() => set_kind('latlong')} /> Lat-long</label>
         </fieldset>
         <label>Exposure: ${stops > 0 ? '+' : ''}${stops.toFixed(1)} stops
-            <input type="range" id="exposure" min="-16" max="16" step="0.1" value=${stops} onInput=${event => {
+            <input type="range" id="exposure" min=${-most_stops} max=${most_stops} step="0.1" value=${stops} onInput=${event => {
                 set_auto(false);
                 set_stops(Number(event.target.value));
             }} /></label>
@@ -112,7 +114,7 @@ export function MapView({ bake }) {
             failure => take({ problem: failure }),
         );
     }, [bake]);
-    const own = useMemo(() => set?.exposure(m), [set, m]);
+    const own = useMemo(() => set && Math.min(Math.max(set.exposure(m), -most_stops), most_stops), [set, m]);
     if (!set)
         return problem
             ? html`<${ProblemNote} problem=${problem} />`
