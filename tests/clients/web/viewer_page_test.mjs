@@ -33,7 +33,7 @@ window.unmount = () => render(null, place);`;
 const sources = { strands: 'first', maps: 'second' }; // what the new bake has in common with older ones
 const going = json({ id: 'new', state: 'running' });
 let site, server, browser, page, posted, refusal;
-let done; // the new bake
+let done, expired; // the new bake; whether files are refused
 let polls; // answers about the bake that was asked for; the last one stays
 
 /** Curls round a ball: something that can be recognised in a picture. */
@@ -85,6 +85,7 @@ before(async () => {
     const answer = (method, path, body) => {
         if (path === '/') return { type: 'text/html', body: html };
         if (path === '/mount.js') return { type: 'text/javascript', body: mount };
+        if (expired && path.includes('/files/')) return json({ detail: 'A token is needed.' }, 401);
         if (method === 'POST' && refusal) return json({ detail: refusal }, 422);
         if (method === 'POST') {
             posted.push(JSON.parse(body));
@@ -108,6 +109,7 @@ after(async () => {
 beforeEach(() => {
     posted = [];
     refusal = null;
+    expired = false;
     polls = [going, done];
 });
 afterEach(async () => {
@@ -340,6 +342,13 @@ test('A bake without hair and one whose files do not fit together are told of in
         await page.innerText('.viewer-problem'),
         /strands\.bin does not hold positions as strands\.json tells/,
     );
+});
+
+test('Where the session has expired the page is told, which asks for a token', async () => {
+    expired = true;
+    await open('first');
+    assert.match(await page.innerText('.viewer-problem'), /strands.json .* could not be fetched: A token is needed/);
+    assert.ok(await page.evaluate(() => window.locked));
 });
 
 test('A browser without WebGL 2 is told so', async () => {
