@@ -1,26 +1,59 @@
 // The maps as pictures: net or lat-long, any of them, at any exposure, with the value under the pointer.
 import { html, useEffect, useMemo, useRef, useState } from '../../vendor/preact.js';
+import { from_half } from '../../viewer/half.js';
 import { use_app } from '../hooks.js';
 import { Facts, Loading, ProblemNote } from '../parts.js';
 import { number_words } from '../words.js';
-import { face_names, layout_of, texel_direction } from './cube.js';
+import { face_names, latlong_direction, layout_of, texel_direction, texel_of } from './cube.js';
 import { load_maps, srgb_byte } from './map_set.js';
 
 const most_stops = 32; // as in the viewer
+const lat_long_width = 1024; // at most
 
-function draw(canvas, set, m, layout, stops) {
-    const { width, height } = layout;
+/** As layout_of, but a lat-long picture of large maps has fewer pixels than would show every texel. */
+function picture_layout(kind, n) {
+    const width = 16 * n;
+    if (kind === 'net' || width <= lat_long_width) return layout_of(kind, n);
+    const height = lat_long_width / 2;
+    return {
+        width: lat_long_width,
+        height,
+        texel: (x, y) => texel_of(latlong_direction(x, y, lat_long_width, height), n),
+    };
+}
+
+/** For every pixel the texel's number in a map, -1 outside of the faces: worked out once, not at every exposure. */
+function texel_numbers({ width, height, texel }, n) {
+    const numbers = new Int32Array(width * height);
+    for (let y = 0, at = 0; y < height; ++y)
+        for (let x = 0; x < width; ++x, ++at) {
+            const found = texel(x, y);
+            numbers[at] = found ? (found.face * n + found.j) * n + found.i : -1;
+        }
+    return numbers;
+}
+
+/** Half float -> byte of sRGB, for all of them. */
+function byte_table(gain) {
+    const bytes = new Uint8Array(65536);
+    for (let bits = 0; bits < 0x7c00; ++bits) bytes[bits] = srgb_byte(from_half(bits) * gain);
+    bytes[0x7c00] = 255; // infinite; negative and no numbers stay black
+    return bytes;
+}
+
+function draw(canvas, set, m, { width, height }, numbers, stops) {
     canvas.width = width;
     canvas.height = height;
     const image = new ImageData(width, height);
-    const gain = 2 ** stops;
-    for (let y = 0, at = 0; y < height; ++y)
-        for (let x = 0; x < width; ++x, at += 4) {
-            const texel = layout.texel(x, y);
-            if (!texel) continue; // stays transparent
-            set.value(m, texel).forEach((value, channel) => (image.data[at + channel] = srgb_byte(value * gain)));
-            image.data[at + 3] = 255;
-        }
+    const bytes = byte_table(set.scale * 2 ** stops);
+    const first = set.maps[m].offset / 2;
+    for (let pixel = 0; pixel < numbers.length; ++pixel) {
+        if (numbers[pixel] < 0) continue; // stays transparent
+        const from = first + 4 * numbers[pixel];
+        for (let channel = 0; channel < 3; ++channel)
+            image.data[4 * pixel + channel] = bytes[set.halves[from + channel]];
+        image.data[4 * pixel + 3] = 255;
+    }
     canvas.getContext('2d').putImageData(image, 0, 0);
 }
 
@@ -40,8 +73,9 @@ const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], Arrow
 function Picture({ set, m, kind, stops, on_texel }) {
     const canvas = useRef(null);
     const at = useRef([0, 0]);
-    const layout = useMemo(() => layout_of(kind, set.face_size), [kind, set]);
-    useEffect(() => draw(canvas.current, set, m, layout, stops), [set, m, layout, stops]);
+    const layout = useMemo(() => picture_layout(kind, set.face_size), [kind, set]);
+    const numbers = useMemo(() => texel_numbers(layout, set.face_size), [layout]);
+    useEffect(() => draw(canvas.current, set, m, layout, numbers, stops), [set, m, numbers, stops]);
     const look = (x, y) => {
         const texel = layout.texel(x, y);
         if (!texel) return false;
@@ -91,10 +125,11 @@ function MapControls({ set, m, set_m, kind, set_kind, stops, set_stops, auto, se
                 onChange=${() => set_kind('latlong')} /> Lat-long</label>
         </fieldset>
         <label>Exposure: ${stops > 0 ? '+' : ''}${stops.toFixed(1)} stops
-            <input type="range" id="exposure" min=${-most_stops} max=${most_stops} step="0.1" value=${stops} onInput=${event => {
-                set_auto(false);
-                set_stops(Number(event.target.value));
-            }} /></label>
+            <input type="range" id="exposure" min=${-most_stops} max=${most_stops} step="0.1" value=${stops}
+                onInput=${event => {
+                    set_auto(false);
+                    set_stops(Number(event.target.value));
+                }} /></label>
         <label><input type="checkbox" checked=${auto}
             onChange=${event => set_auto(event.target.checked)} /> Exposure by the map's brightest texel</label>
     </div>`;
