@@ -14,8 +14,9 @@ export class BakeProblem extends Error {
 }
 
 /**
- * {id, request, strands, maps} of a bake that is done. `known` are bakes loaded before: the same strands or maps (by
- * digest) are not fetched again but are the same object. `say` is told what is going on. Throws BakeProblem.
+ * {id, names, model, environment, request, strands, maps} of a bake that is done; all but the last two as the service
+ * tells. `known` are bakes loaded before: the same strands or maps (by digest) are not fetched again but are the same
+ * object. `say` is told what is going on. Throws BakeProblem.
  */
 export async function load_bake(api, id, { known = [], signal, say = () => {} } = {}) {
     say('Asking for the bake.');
@@ -32,6 +33,9 @@ export async function load_bake(api, id, { known = [], signal, say = () => {} } 
     };
     return {
         id,
+        names: view.names, // as which it was asked for
+        model: view.model,
+        environment: view.environment,
         request: view.request,
         strands: await fetched('strands', 'strands.json', 'strands.bin', read_strands),
         maps: await fetched('maps', 'maps.json', 'maps.f16', read_maps),

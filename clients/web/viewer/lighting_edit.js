@@ -95,6 +95,19 @@ export function compose_request(request, edit) {
     return { ...request, irradiance };
 }
 
+/** What a request does to its environment, for people: a list. */
+export function lighting_words(request) {
+    const { rotation_deg, exposure_stops, tint, lights } = { ...no_edit(), ...request.irradiance };
+    const [x, y, z] = rotation_deg.map(angle => `${Number(angle.toFixed(1))}°`);
+    const words = [];
+    if (rotation_deg[0] || rotation_deg[2]) words.push(`sky turned by ${x} ${y} ${z} about X Y Z`);
+    else if (rotation_deg[1]) words.push(`sky turned by ${y}`);
+    if (exposure_stops) words.push(`${exposure_stops > 0 ? '+' : ''}${Number(exposure_stops.toFixed(2))} stops`);
+    if (tint.some(factor => factor !== 1)) words.push('tinted');
+    if (lights.length) words.push(`${lights.length} ${lights.length === 1 ? 'light' : 'lights'} added`);
+    return words;
+}
+
 function refuse_beyond_limits({ exposure_stops, lights }) {
     if (Math.abs(exposure_stops) > 64)
         throw new Error(`The exposure would be ${exposure_stops} stops in all; a bake takes -64 to 64.`);

@@ -2,6 +2,7 @@
 //
 //   ViewerPage({ left, right, api }): left and right are ids of bakes (right may be missing); with others, camera, look
 //   and edit stay, and what they share with those before is not fetched again;
+//   words(bake) says which bake that is;
 //   api is that of app/api.js: its failures are Errors in words, with the status (0: no answer).
 //
 // What it holds on the card, its loop and what it is fetching end when it is unmounted.
@@ -11,13 +12,13 @@ import { load_bake } from './bake_files.js';
 import { HairPanel, LightsPanel, SidesPanel, SkyPanel } from './controls.js';
 import { Slider } from './fields.js';
 import { HairView, default_look, default_side, most_stops } from './hair_view.js';
-import { compose_request, is_edited, no_edit } from './lighting_edit.js';
+import { compose_request, is_edited, lighting_words, no_edit } from './lighting_edit.js';
 import { listen_for_orbit } from './orbit_input.js';
 
 const css = new URL('viewer.css', import.meta.url).href;
 const hint = 'Drag or arrow keys: orbit. Shift with either: move. Wheel, pinch, plus and minus: distance. F: frame.';
 
-export function ViewerPage({ left, right, api }) {
+export function ViewerPage({ left, right, api, words = bake => bake.id.slice(0, 8) }) {
     const canvas = useRef(null),
         view = useRef(null),
         stage = useRef(null);
@@ -62,7 +63,9 @@ export function ViewerPage({ left, right, api }) {
     useEffect(() => view.current?.set_lighting(edit), [edit]);
     useEffect(() => view.current?.set_display_stops(stops), [stops]);
 
-    const names = bakes.map(bake => `${bake.id.slice(0, 8)}, ${bake.maps.count - 1} specular maps`);
+    const names = bakes.map(bake =>
+        [words(bake), `${bake.maps.count - 1} specular maps`, ...lighting_words(bake.request)].join(', '),
+    );
     const ready = bakes.length > 0,
         edited = bakes[sides[0].bake]; // the one on the left is what an edit starts from
     return html`<link rel="stylesheet" href=${css} />
@@ -97,8 +100,8 @@ export function ViewerPage({ left, right, api }) {
                         ways=${ways_of(bakes)} on_way=${set_way} on=${lights => set_edit({ ...edit, lights })} />
                     <fieldset>
                         <legend>Bake this lighting</legend>
-                        <${BakeOrder} api=${api} old=${edited.id} label="Bake this lighting" disabled=${!is_edited(edit)}
-                            request=${() => compose_request(edited.request, edit)}
+                        <${BakeOrder} api=${api} old=${edited.id} label="Bake this lighting"
+                            disabled=${!is_edited(edit)} request=${() => compose_request(edited.request, edit)}
                             on_asked=${id => orders.current.set(id, edit)} />
                         <button type="button" class="secondary" disabled=${!is_edited(edit)}
                             onClick=${() => set_edit(no_edit())}>

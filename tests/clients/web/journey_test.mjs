@@ -179,6 +179,8 @@ test('the viewer turns the sky, and its light is baked', async () => {
         .or(page.getByRole('link', { name: 'See it on the hair' }))
         .click();
     await page.getByText(/Frame time: [0-9.]+ ms/).waitFor();
+    const sky = basename(a_real_map());
+    await page.locator('.viewer-captions', { hasText: `groom.hair under ${sky}, 9 specular maps` }).waitFor();
     await page.locator('label', { hasText: 'Turn about the vertical (Y)' }).locator('input').fill('30');
     await keep_pictures('viewer');
     await page.getByRole('button', { name: 'Bake this lighting' }).click();
@@ -186,8 +188,15 @@ test('the viewer turns the sky, and its light is baked', async () => {
     const { bakes } = await daemon.json('/v1/bakes?state=done');
     const turned = await daemon.json(`/v1/bakes/${bakes[0].id}`);
     assert.deepEqual(turned.request.irradiance.rotation_deg, [0, 30, 0]);
+    const fetched = [];
+    page.on('request', request => fetched.push(basename(new URL(request.url()).pathname)));
     await page.getByRole('link', { name: 'compare it with this one' }).click();
-    await page.getByText(/Frame time: [0-9.]+ ms/).waitFor();
+    await page
+        .locator('.viewer-captions span', { hasText: `groom.hair under ${sky}, 9 specular maps, sky turned by 30°` })
+        .waitFor();
+    assert.equal(await page.getByRole('slider', { name: 'Turn about the vertical (Y)' }).inputValue(), '30');
+    assert.ok(fetched.includes('maps.f16'));
+    assert.ok(!fetched.some(name => name.startsWith('strands')), 'the hair was there already');
     await page.screenshot({ path: join(screenshots, 'viewer_split.png') });
 });
 

@@ -4,6 +4,7 @@ import { test } from 'node:test';
 import { from_half, to_half } from '../../../clients/web/viewer/half.js';
 import {
     compose_request,
+    lighting_words,
     multiply,
     no_edit,
     rotation_degrees,
@@ -154,4 +155,19 @@ test('Every half float survives being read and written, and what lies between go
     }
     assert.equal(to_half(1e9), 0x7c00);
     assert.equal(to_half(65519), 0x7bff);
+});
+
+test('A request says in words what it does to its environment', () => {
+    const words = irradiance => lighting_words({ irradiance });
+    assert.deepEqual(lighting_words({}), []);
+    assert.deepEqual(words(no_edit()), []);
+    assert.deepEqual(words({ rotation_deg: [0, -30.04, 0], exposure_stops: -1.5 }), [
+        'sky turned by -30°',
+        '-1.5 stops',
+    ]);
+    assert.deepEqual(words({ rotation_deg: [10, 0, 5], tint: [1, 1, 0.9], lights: [{}] }), [
+        'sky turned by 10° 0° 5° about X Y Z',
+        'tinted',
+        '1 light added',
+    ]);
 });

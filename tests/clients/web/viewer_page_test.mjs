@@ -80,7 +80,9 @@ before(async () => {
         broken: { files: { ...hair, ...maps(34), 'strands.bin': Buffer.alloc(100) } },
     });
     const view_of = id => JSON.parse(bakes('GET', `/v1/bakes/${id}`).body);
-    const files = Object.entries(sources).flatMap(([kind, id]) => view_of(id).files.filter(f => f.name.startsWith(kind)));
+    const files = Object.entries(sources).flatMap(([kind, id]) =>
+        view_of(id).files.filter(({ name }) => name.startsWith(kind)),
+    );
     done = json({ ...view_of('first'), id: 'new', files });
     const answer = (method, path, body) => {
         if (path === '/') return { type: 'text/html', body: html };
@@ -183,7 +185,10 @@ test('Each choice of what is shown gives another picture, and two bakes stand si
     await open('first/second');
     const seen = [await picture()];
     await page.screenshot({ path: join(pictures, 'viewer_split.png') });
-    assert.match(await page.innerText('.viewer-captions'), /first, 33 specular maps\s+second, 9 specular maps/);
+    assert.match(
+        await page.innerText('.viewer-captions'),
+        /first, 33 specular maps, sky turned by 30°, \+1 stops\s+second, 9 specular maps, sky turned by 10°/,
+    );
     await page.getByLabel('Split').selectOption('One picture');
     for (const part of ['Diffuse only', 'Specular only', 'A only', 'Diffuse and specular']) {
         await page.getByLabel('Part').selectOption(part);
