@@ -223,6 +223,30 @@ test('a set of bakes is baked again under another sky: the hair is not looked at
     await keep_pictures('batch');
 });
 
+test('directional transmittance and bent cones of a real bake hide an added light, each in its way', async () => {
+    const { request } = await daemon.json(`/v1/bakes/${first_bake}`);
+    const transmittance = { ...request.transmittance, sh_bands: 3, bent_cone: true };
+    const { id } = await daemon.post('/v1/bakes', { ...request, transmittance });
+    await daemon.finished(id);
+    const said = [];
+    page.on('console', message => message.type() === 'error' && said.push(message.text()));
+    await page.goto(`${daemon.address}/#/view/${id}`);
+    await page.getByText(/Frame time: [0-9.]+ ms/).waitFor();
+    await page.getByRole('slider', { name: 'Exposure' }).fill('-6'); // the light alone, nearly
+    await page.getByRole('button', { name: 'Add a light' }).click();
+    const pictures = new Set();
+    const ways = ['Directional transmittance', 'Bent cone', 'A alone'];
+    for (const way of ways) {
+        await page.getByRole('combobox', { name: 'Hidden by the hair through' }).selectOption(way);
+        await page.evaluate(() => new Promise(drawn => requestAnimationFrame(() => requestAnimationFrame(drawn))));
+        const bytes = await page.locator('.viewer canvas').screenshot();
+        pictures.add(bytes.toString('base64'));
+        await page.screenshot({ path: join(screenshots, `viewer_light_${ways.indexOf(way)}.png`) });
+    }
+    assert.equal(pictures.size, ways.length, 'two ways look alike');
+    assert.deepEqual(said, []);
+});
+
 test('the page broke no rule on the way', () => {
     assert.deepEqual(faults, []);
 });
