@@ -336,6 +336,32 @@ test('the policy stops a script that stands in a page', async () => {
     await context.close();
 });
 
+async function open_form(page, query = '') {
+    await page.goto(`${daemon.address}/#/bake${query}`);
+    await page.getByRole('button', { name: 'Bake', exact: true }).waitFor();
+}
+
+const request_of_form = async page => JSON.parse(await page.locator('form pre').textContent());
+
+test('numbers are taken as they are typed', async () => {
+    await with_page(daemon.address, async page => {
+        await open_form(page);
+        await page.getByText('Irradiance', { exact: true }).click();
+        const type = async (field, text) => {
+            await field.fill('');
+            await field.pressSequentially(text);
+            assert.equal(await field.inputValue(), text);
+        };
+        await type(page.getByLabel('Exponent', { exact: true }), '10.05');
+        await type(page.getByLabel('Rotation, degrees, X'), '-0.5');
+        await type(page.getByLabel(/^Tint.*, R$/), '0.02');
+        const { irradiance } = await request_of_form(page);
+        assert.deepEqual(irradiance, { exponent: 10.05, rotation_deg: [-0.5, 0, 0], tint: [0.02, 1, 1] });
+        await page.getByLabel('Preset').selectOption('draft'); // what it sets replaces what was typed
+        assert.equal(await page.getByLabel(/^Tint.*, R$/).inputValue(), '1');
+    });
+});
+
 async function check_with_axe(page, name) {
     await page.evaluate(axe); // by the debugger, which the page's policy does not bind
     const { violations } = await page.evaluate(() => globalThis.axe.run(document, { resultTypes: ['violations'] }));

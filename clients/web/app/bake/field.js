@@ -1,18 +1,24 @@
 // One field of the request as the schema describes it: name, unit, range, a line of help, and what is wrong with it.
-import { html } from '../../vendor/preact.js';
+import { html, useState } from '../../vendor/preact.js';
 import { title_words } from '../words.js';
 import { number_part, range_words, takes_null, word_of } from './schema.js';
 
 const to_number = text => (text.trim() === '' ? null : Number(text));
 const shown = value => (typeof value === 'number' ? String(value) : '');
 
-function NumberInput({ id, schema, value, on_change, label, described, invalid }) {
+function NumberInput({ id, schema, value = null, on_change, label, described, invalid }) {
     const part = number_part(schema);
+    const [typed, set_typed] = useState('');
+    const text = to_number(typed) === value ? typed : shown(value); // "0.0" on the way to "0.02" stays as it is
+    const type = event => {
+        set_typed(event.target.value);
+        on_change(to_number(event.target.value));
+    };
     return html`<input id=${id} type="number" step=${part.type === 'integer' ? 1 : 'any'} min=${part.minimum}
         max=${part.maximum}
-        value=${shown(value)} aria-label=${label} aria-describedby=${described} aria-invalid=${invalid ? 'true' : null}
+        value=${text} aria-label=${label} aria-describedby=${described} aria-invalid=${invalid ? 'true' : null}
         placeholder=${takes_null(schema) ? 'as the file says' : null}
-        onInput=${event => on_change(to_number(event.target.value))} />`;
+        onInput=${type} />`;
 }
 
 /** A number, or the word that the schema allows in its place. */
