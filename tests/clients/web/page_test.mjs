@@ -362,6 +362,23 @@ test('numbers are taken as they are typed', async () => {
     });
 });
 
+test('a stage of the form stays open while one types in it', async () => {
+    await with_page(daemon.address, async page => {
+        await open_form(page);
+        await page.getByText('Irradiance', { exact: true }).click();
+        const size = page.getByLabel('Face size');
+        await size.fill('3');
+        await page.getByText('Irradiance: 1 changed, 1 to correct').waitFor();
+        await size.press('End');
+        await size.pressSequentially('2');
+        await page.getByText('Irradiance: 1 changed', { exact: true }).waitFor();
+        assert.ok(await size.isVisible());
+        assert.ok(await size.evaluate(field => field === document.activeElement));
+        await page.getByText('Irradiance: 1 changed', { exact: true }).click();
+        await size.waitFor({ state: 'hidden' });
+    });
+});
+
 async function check_with_axe(page, name) {
     await page.evaluate(axe); // by the debugger, which the page's policy does not bind
     const { violations } = await page.evaluate(() => globalThis.axe.run(document, { resultTypes: ['violations'] }));

@@ -14,6 +14,16 @@ const stages = ['strand', 'transmittance', 'irradiance'];
 const digest_of = value => value?.replace(/^sha256:/, '') ?? '';
 const named = digest => (digest ? `sha256:${digest}` : null);
 
+/** A part of the form: what is wrong in it opens it, people alone close it. */
+function Fold({ title, faulty, children }) {
+    const [open, set_open] = useState(faulty);
+    useEffect(() => {
+        if (faulty) set_open(true);
+    }, [faulty]);
+    return html`<details class="stage" open=${open} onToggle=${event => set_open(event.currentTarget.open)}>
+        <summary>${title}</summary>${children}</details>`;
+}
+
 function Stage({ name, schema, values, base, wrong, on_change }) {
     const part = { properties: { [name]: schema.properties[name] } };
     const changed = differences(part, values, base);
@@ -21,8 +31,8 @@ function Stage({ name, schema, values, base, wrong, on_change }) {
     const note = [changed.length && `${changed.length} changed`, bad.length && `${bad.length} to correct`]
         .filter(Boolean)
         .join(', ');
-    return html`<details class="stage" open=${bad.length > 0 || null}><summary>
-        ${title_words(name)}${note && `: ${note}`}</summary>
+    const title = title_words(name) + (note && `: ${note}`);
+    return html`<${Fold} title=${title} faulty=${bad.length > 0}>
         <p>${schema.properties[name].description}</p>
         <div class="fields">
             ${fields_of(part).map(
@@ -32,7 +42,7 @@ function Stage({ name, schema, values, base, wrong, on_change }) {
                 on_change=${value => on_change(path, value)} />`,
             )}
         </div>
-    </details>`;
+    <//>`;
 }
 
 // Also that of a part of it: "irradiance.tint.2".
@@ -114,7 +124,8 @@ function Form({ schema, presets, query }) {
         <${Presets} presets=${presets} value=${preset} on_change=${take_preset} />
         ${stages.map(name => html`<${Stage} key=${name} name=${name} schema=${schema} values=${values} base=${base}
             wrong=${visible} on_change=${change} />`)}
-        <details class="stage"><summary>Meshes and priority</summary><div class="fields">
+        <${Fold} title="Meshes and priority"
+            faulty=${['occluder', 'receiver', 'priority'].some(name => visible[name])}><div class="fields">
             ${['occluder', 'receiver'].map(
                 name => html`<${MeshField} key=${name} name=${name} schema=${schema.properties[name]}
                     value=${values[name]}
@@ -123,7 +134,7 @@ function Form({ schema, presets, query }) {
             <${Field} path=${['priority']} schema=${schema.properties.priority} value=${values.priority}
                 fault=${visible.priority}
                 on_change=${value => change(['priority'], value)} />
-        </div></details>
+        </div><//>
         <${Field} path=${['outputs']} schema=${schema.properties.outputs} value=${values.outputs}
             fault=${visible.outputs}
             on_change=${value => change(['outputs'], value)} />
