@@ -379,6 +379,34 @@ test('a stage of the form stays open while one types in it', async () => {
     });
 });
 
+test('a bake asked for in the form by name follows the name to its new version', async () => {
+    const studio = await daemon.add('environment', join(sample, 'studio.hdr'));
+    await with_page(daemon.address, async page => {
+        await page.goto(`${daemon.address}/#/environments`);
+        const card = page.locator(`.card[data-id="${sky}"]`);
+        await card.getByText('Name it').click();
+        await card.getByLabel('Name').first().fill('stage/dawn');
+        await card.getByRole('button', { name: 'Put the name here' }).click();
+        await card.getByRole('link', { name: 'stage/dawn', exact: true }).waitFor();
+        await card.getByRole('button', { name: /^Bake with/ }).click();
+        await page.locator(`input[type=radio][value="${groom}"]`).check();
+        await page.getByLabel('Preset').selectOption('draft');
+        const by = page.getByLabel('Environment: asked for by');
+        assert.equal((await request_of_form(page)).environment, 'name:stage/dawn');
+        await by.selectOption('this file');
+        assert.equal((await request_of_form(page)).environment, `sha256:${sky}`);
+        await by.selectOption('name:stage/dawn');
+        await page.getByRole('button', { name: 'Bake', exact: true }).click();
+        await page.waitForURL(/#\/bakes\/[0-9a-f]{64}$/);
+        await daemon.finished(page.url().split('#/bakes/')[1]);
+        await page.goto(`${daemon.address}/#/names/environment/stage/dawn`);
+        await page.getByLabel('File').selectOption(studio);
+        await page.getByRole('button', { name: 'Put as version 2' }).click();
+        await page.getByText('1 bake asked for this name, 1 of them for an older version.').waitFor();
+        await page.getByRole('button', { name: /Bake with the newest version/ }).waitFor();
+    });
+});
+
 async function check_with_axe(page, name) {
     await page.evaluate(axe); // by the debugger, which the page's policy does not bind
     const { violations } = await page.evaluate(() => globalThis.axe.run(document, { resultTypes: ['violations'] }));

@@ -2,8 +2,16 @@
 import { html, useEffect, useMemo, useRef, useState } from '../../vendor/preact.js';
 import { Field } from '../bake/field.js';
 import { MeshField } from '../bake/mesh_field.js';
-import { Picker } from '../bake/picker.js';
-import { build_request, differences, first_values, merged, value_at, with_value } from '../bake/request.js';
+import { Picker, Reference } from '../bake/picker.js';
+import {
+    build_request,
+    differences,
+    first_values,
+    merged,
+    reference_to,
+    value_at,
+    with_value,
+} from '../bake/request.js';
 import { faults, fields_of } from '../bake/schema.js';
 import { use_inputs } from '../gallery.js';
 import { use_app } from '../hooks.js';
@@ -11,8 +19,6 @@ import { Loading, ProblemNote } from '../parts.js';
 import { count_words, title_words } from '../words.js';
 
 const stages = ['strand', 'transmittance', 'irradiance'];
-const digest_of = value => value?.replace(/^sha256:/, '') ?? '';
-const named = digest => (digest ? `sha256:${digest}` : null);
 
 /** A part of the form: what is wrong in it opens it, people alone close it. */
 function Fold({ title, faulty, children }) {
@@ -72,11 +78,18 @@ function Form({ schema, presets, query }) {
     const start = useMemo(() => first_values(schema), [schema]);
     const [preset, set_preset] = useState('');
     const [base, set_base] = useState(start);
-    const [values, set_values] = useState({ ...start, hair: named(query.hair), environment: named(query.environment) });
+    const [settings, set_settings] = useState(start);
+    const [hair, set_hair] = useState({ id: query.hair ?? '' });
+    const [environment, set_environment] = useState({ id: query.environment ?? '' });
     const [asked, set_asked] = useState(false);
     const [problem, set_problem] = useState(null);
     const form = useRef(null);
 
+    const values = {
+        ...settings,
+        hair: reference_to(hair, models.names),
+        environment: reference_to(environment, environments.names),
+    };
     const request = build_request(schema, values);
     const wrong = Object.fromEntries(
         faults(schema, request).map(({ path, words }) => [path, `${title_words(path)} ${words}.`]),
@@ -85,14 +98,18 @@ function Form({ schema, presets, query }) {
     if (problem?.field) wrong[problem.field.replaceAll(/\[(\d+)\]/g, '.$1')] = problem.message;
     const change = (path, value) => {
         set_problem(null);
-        set_values(old => with_value(old, path, value));
+        set_settings(old => with_value(old, path, value));
+    };
+    const choose = (set, chosen) => {
+        set_problem(null);
+        set(chosen);
     };
     const take_preset = name => {
-        const settings = merged(start, presets.find(one => one.name === name)?.request ?? {});
-        const { hair, environment, occluder, receiver, outputs } = values;
+        const fresh = merged(start, presets.find(one => one.name === name)?.request ?? {});
+        const { occluder, receiver, outputs } = settings;
         set_preset(name);
-        set_base(settings);
-        set_values({ ...settings, hair, environment, occluder, receiver, outputs });
+        set_base(fresh);
+        set_settings({ ...fresh, occluder, receiver, outputs });
     };
     const submit = async event => {
         event.preventDefault();
@@ -114,12 +131,14 @@ function Form({ schema, presets, query }) {
     };
     const visible = asked ? wrong : Object.fromEntries(Object.entries(wrong).filter(([path]) => path !== 'hair'));
     return html`<form onSubmit=${submit} ref=${form} novalidate>
-        <${Picker} kind="model" title="Hair model" inputs=${models} value=${digest_of(values.hair)}
-            none="None: maps alone"
-            on_change=${id => change(['hair'], named(id))} />
-        <${Picker} kind="environment" title="Environment" inputs=${environments}
-            value=${digest_of(values.environment)} none="None: transmittance alone"
-            on_change=${id => change(['environment'], named(id))} />
+        <${Picker} kind="model" title="Hair model" inputs=${models} value=${hair.id} none="None: maps alone"
+            on_change=${id => choose(set_hair, { id })} />
+        <${Reference} title="Hair model" paths=${models.names[hair.id]} value=${values.hair}
+            on_change=${by => choose(set_hair, { ...hair, by })} />
+        <${Picker} kind="environment" title="Environment" inputs=${environments} value=${environment.id}
+            none="None: transmittance alone" on_change=${id => choose(set_environment, { id })} />
+        <${Reference} title="Environment" paths=${environments.names[environment.id]} value=${values.environment}
+            on_change=${by => choose(set_environment, { ...environment, by })} />
         ${visible.hair && html`<p class="problem" role="alert">${visible.hair}</p>`}
         <${Presets} presets=${presets} value=${preset} on_change=${take_preset} />
         ${stages.map(name => html`<${Stage} key=${name} name=${name} schema=${schema} values=${values} base=${base}
