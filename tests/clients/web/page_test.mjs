@@ -407,6 +407,28 @@ test('a bake asked for in the form by name follows the name to its new version',
     });
 });
 
+test('a bake does not begin before its mesh is sent', async () => {
+    const file = join(sample, 'large.obj');
+    writeFileSync(file, `${readFileSync(join(sample, 'head.obj'), 'utf8')}\n${'# room\n'.repeat(2e6)}`);
+    await with_page(daemon.address, async page => {
+        const posts = [];
+        page.on('request', request => request.url().endsWith('/v1/bakes') && posts.push(request.method()));
+        await open_form(page, `?environment=${sky}`);
+        await page.locator(`input[type=radio][value="${groom}"]`).check();
+        await page.getByText('Meshes and priority').click();
+        await throttle(page, slow);
+        await page.getByLabel('Send an OBJ file as occluder').setInputFiles(file);
+        await page.getByRole('button', { name: 'Bake', exact: true }).click();
+        const occluder = page.getByRole('combobox', { name: 'Occluder' });
+        await page.locator('.problem', { hasText: 'large.obj is still being sent.' }).waitFor();
+        assert.equal(await occluder.getAttribute('aria-invalid'), 'true');
+        assert.deepEqual(posts, []);
+        await throttle(page, -1);
+        await page.locator('.problem').waitFor({ state: 'detached' });
+        assert.equal((await request_of_form(page)).occluder, `sha256:${sha256(readFileSync(file))}`);
+    });
+});
+
 async function check_with_axe(page, name) {
     await page.evaluate(axe); // by the debugger, which the page's policy does not bind
     const { violations } = await page.evaluate(() => globalThis.axe.run(document, { resultTypes: ['violations'] }));

@@ -81,6 +81,7 @@ function Form({ schema, presets, query }) {
     const [settings, set_settings] = useState(start);
     const [hair, set_hair] = useState({ id: query.hair ?? '' });
     const [environment, set_environment] = useState({ id: query.environment ?? '' });
+    const [waits, set_waits] = useState({}); // by field: the file that is not there yet, in words
     const [asked, set_asked] = useState(false);
     const [problem, set_problem] = useState(null);
     const form = useRef(null);
@@ -95,6 +96,7 @@ function Form({ schema, presets, query }) {
         faults(schema, request).map(({ path, words }) => [path, `${title_words(path)} ${words}.`]),
     );
     if (!values.hair && !values.environment) wrong.hair = 'A hair model, an environment, or one of each is needed.';
+    for (const [name, words] of Object.entries(waits)) if (words) wrong[name] = words;
     if (problem?.field) wrong[problem.field.replaceAll(/\[(\d+)\]/g, '.$1')] = problem.message;
     const change = (path, value) => {
         set_problem(null);
@@ -129,7 +131,8 @@ function Form({ schema, presets, query }) {
             set_problem(failure);
         }
     };
-    const visible = asked ? wrong : Object.fromEntries(Object.entries(wrong).filter(([path]) => path !== 'hair'));
+    const later = path => path === 'hair' || waits[path]; // shown only to who wants to go on nevertheless
+    const visible = asked ? wrong : Object.fromEntries(Object.entries(wrong).filter(([path]) => !later(path)));
     return html`<form onSubmit=${submit} ref=${form} novalidate>
         <${Picker} kind="model" title="Hair model" inputs=${models} value=${hair.id} none="None: maps alone"
             on_change=${id => choose(set_hair, { id })} />
@@ -148,7 +151,8 @@ function Form({ schema, presets, query }) {
             ${['occluder', 'receiver'].map(
                 name => html`<${MeshField} key=${name} name=${name} schema=${schema.properties[name]}
                     value=${values[name]}
-                fault=${visible[name]} on_change=${value => change([name], value)} />`,
+                    fault=${visible[name]} on_change=${value => change([name], value)}
+                    on_wait=${words => set_waits(old => ({ ...old, [name]: words }))} />`,
             )}
             <${Field} path=${['priority']} schema=${schema.properties.priority} value=${values.priority}
                 fault=${visible.priority}
