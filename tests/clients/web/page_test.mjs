@@ -429,6 +429,50 @@ test('a bake does not begin before its mesh is sent', async () => {
     });
 });
 
+test('Cancel ends an upload here and on the service, and the next file goes on', async () => {
+    const [file, next] = [large_groom(13), large_groom(14)];
+    await with_page(daemon.address, async page => {
+        const uploads = [];
+        page.on('request', request => request.method() === 'PATCH' && uploads.push(request.url()));
+        await send_slowly(page, [file, next]);
+        await page.getByRole('button', { name: 'Cancel' }).first().click();
+        await throttle(page, -1);
+        await page.locator('.job[data-phase=stored]').waitFor();
+        await assert_stored(next);
+        assert.equal(await page.locator('.job').count(), 1);
+        const head = async () =>
+            (await fetch(uploads[0], { method: 'HEAD', headers: { 'Tus-Resumable': '1.0.0' } })).status;
+        for (const end = Date.now() + 10000; (await head()) === 200 && Date.now() < end;)
+            await page.waitForTimeout(100);
+        assert.ok([404, 410].includes(await head()), `the upload is still there: ${await head()}`);
+        assert.equal((await fetch(`${daemon.address}/v1/models/${sha256(readFileSync(file))}`)).status, 404);
+    });
+});
+
+test('Cancel before anything is sent keeps it from being sent', async () => {
+    await with_page(daemon.address, async page => {
+        const sent = [];
+        page.on('request', request => request.url().includes('/v1/uploads') && sent.push(request.method()));
+        let asked;
+        const waiting = new Promise(resolve => (asked = resolve));
+        await page.route('**/v1/blobs/*', async route => {
+            asked();
+            await page.locator('.job').waitFor({ state: 'detached' });
+            await route.continue().catch(() => {}); // the page has taken the question back
+        });
+        await page.goto(`${daemon.address}/#/environments`);
+        const file = { name: 'never.hdr', mimeType: '', buffer: Buffer.from('never sent') };
+        await page.locator('.drop-zone input[type=file]').setInputFiles(file);
+        await waiting;
+        await page.getByRole('button', { name: 'Cancel: never.hdr' }).click();
+        await page.locator('.job').waitFor({ state: 'detached' });
+        await page.unrouteAll();
+        await page.locator('.drop-zone input[type=file]').setInputFiles(join(sample, 'sky.hdr'));
+        await page.getByText('the service had it already: nothing was sent').waitFor(); // the queue goes on
+        assert.deepEqual(sent, []);
+    });
+});
+
 async function check_with_axe(page, name) {
     await page.evaluate(axe); // by the debugger, which the page's policy does not bind
     const { violations } = await page.evaluate(() => globalThis.axe.run(document, { resultTypes: ['violations'] }));

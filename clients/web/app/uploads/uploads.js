@@ -1,6 +1,6 @@
 // All files that are being sent, one after the other; they go on while pages change.
 import { forget_file, keep_file, kept_files } from './kept_files.js';
-import { send_file } from './tus_upload.js';
+import { end_upload, send_file } from './tus_upload.js';
 
 /**
  * A job: { id, kind: 'model' | 'environment' | 'mesh', file, phase, done, known, sha256, entry, problem }.
@@ -51,9 +51,11 @@ export class Uploads {
         this.#run();
     }
 
-    /** Takes a job off the list, also while it is being sent. */
+    /** Takes a job off the list, also while it is being sent; what the service has of an unfinished one goes. */
     remove(job) {
-        this.#stops.get(job.id)?.abort();
+        const stop = this.#stops.get(job.id);
+        stop?.abort(new Error('stopped'));
+        if (!stop && job.sha256 && job.phase !== 'stored') end_upload(job.file, job.sha256).catch(() => {});
         forget_file(job.id);
         this.jobs = this.jobs.filter(({ id }) => id !== job.id);
         this.#changed();
@@ -62,29 +64,35 @@ export class Uploads {
     async #run() {
         if (this.#running) return;
         this.#running = true;
-        for (let job; (job = this.jobs.find(({ phase }) => phase === 'waiting'));) await this.#send(job);
-        this.#running = false;
+        try {
+            for (let job; (job = this.jobs.find(({ phase }) => phase === 'waiting'));) await this.#send(job);
+        } finally {
+            this.#running = false;
+        }
     }
 
     async #send(job) {
         const stop = new AbortController();
+        const { signal } = stop;
         this.#stops.set(job.id, stop);
         try {
             this.#update(job, { phase: 'digesting', done: 0 });
-            const sha256 = await digest_of(job.file, done => this.#update(job, { done }), stop.signal);
-            const known = await this.#is_stored(sha256);
+            const sha256 = await digest_of(job.file, done => this.#update(job, { done }), signal);
+            const known = await this.#is_stored(sha256, signal);
             if (!known) {
                 this.#update(job, { phase: 'sending', sha256, done: 0 });
-                await send_file(job.file, sha256, done => this.#update(job, { done }), stop.signal);
+                await send_file(job.file, sha256, done => this.#update(job, { done }), signal);
+                signal.throwIfAborted();
             }
             this.#update(job, { phase: 'reading', sha256, known });
             const entry = job.kind === 'mesh' ? null : await this.#api.post(`/v1/${job.kind}s`, { sha256 });
+            signal.throwIfAborted();
             remember_name(sha256, job.file.name);
             this.#update(job, { phase: 'stored', entry });
             this.#announce(`${job.file.name} is stored.`);
             forget_file(job.id);
         } catch (error) {
-            if (stop.signal.aborted) return;
+            if (signal.aborted) return;
             this.#update(job, { phase: 'failed', problem: error.message, status: error.status });
             if (error.status >= 400 && error.status < 500 && error.status !== 401) forget_file(job.id);
         } finally {
@@ -92,11 +100,12 @@ export class Uploads {
         }
     }
 
-    async #is_stored(sha256) {
+    async #is_stored(sha256, signal) {
         try {
-            await this.#api.ask(`/v1/blobs/${sha256}`, { method: 'HEAD' });
+            await this.#api.ask(`/v1/blobs/${sha256}`, { method: 'HEAD', signal });
             return true;
         } catch (problem) {
+            signal.throwIfAborted();
             if (problem.status === 404) return false;
             throw problem;
         }
@@ -129,7 +138,7 @@ function digest_of(file, on_progress, signal) {
             else end(reject, new Error(data.error));
         };
         worker.onerror = () => end(reject, new Error('The file could not be digested.'));
-        signal.addEventListener('abort', () => end(reject, new Error('stopped')));
+        signal.addEventListener('abort', () => end(reject, signal.reason));
         worker.postMessage(file);
     });
 }
