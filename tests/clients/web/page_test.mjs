@@ -453,23 +453,72 @@ test('Cancel before anything is sent keeps it from being sent', async () => {
     await with_page(daemon.address, async page => {
         const sent = [];
         page.on('request', request => request.url().includes('/v1/uploads') && sent.push(request.method()));
-        let asked;
-        const waiting = new Promise(resolve => (asked = resolve));
+        let asked, cancelled;
+        const question = new Promise(resolve => (asked = resolve));
+        const cancel = new Promise(resolve => (cancelled = resolve));
         await page.route('**/v1/blobs/*', async route => {
             asked();
-            await page.locator('.job').waitFor({ state: 'detached' });
+            await cancel;
             await route.continue().catch(() => {}); // the page has taken the question back
         });
         await page.goto(`${daemon.address}/#/environments`);
         const file = { name: 'never.hdr', mimeType: '', buffer: Buffer.from('never sent') };
         await page.locator('.drop-zone input[type=file]').setInputFiles(file);
-        await waiting;
+        await question;
         await page.getByRole('button', { name: 'Cancel: never.hdr' }).click();
         await page.locator('.job').waitFor({ state: 'detached' });
-        await page.unrouteAll();
+        cancelled();
+        await page.unrouteAll({ behavior: 'wait' });
         await page.locator('.drop-zone input[type=file]').setInputFiles(join(sample, 'sky.hdr'));
         await page.getByText('the service had it already: nothing was sent').waitFor(); // the queue goes on
         assert.deepEqual(sent, []);
+    });
+});
+
+test('a second tab leaves an upload to the first one until that is closed', async () => {
+    const file = large_groom(15);
+    await with_page(daemon.address, async (page, context) => {
+        let begun;
+        const first_piece = new Promise(resolve => (begun = resolve));
+        await page.route('**/v1/uploads/*', route => {
+            if (Number(route.request().headers()['upload-offset']) > 0) begun(); // the second piece never arrives
+            else route.continue();
+        });
+        await page.goto(`${daemon.address}/#/models`);
+        await page.locator('.drop-zone input[type=file]').setInputFiles(file);
+        await first_piece;
+        const other = await context.newPage();
+        const offsets = watch_patches(other);
+        await other.goto(`${daemon.address}/#/models`);
+        await other.locator('.card').first().waitFor();
+        await other.waitForTimeout(500);
+        assert.equal(await other.locator('.job').count(), 0);
+        assert.deepEqual(offsets, []);
+        assert.equal(await page.locator('.job[data-phase=sending]').count(), 1);
+        await page.goto('about:blank'); // closing would first let the piece pass that is held here
+        await other.locator('.job[data-phase=stored]').waitFor({ timeout: patience_ms });
+        assert.ok(offsets.at(0) > 0, `the first PATCH began at ${offsets.at(0)}`);
+        await assert_stored(file);
+    });
+});
+
+test('a file is sent also where the browser has no room to remember it', async () => {
+    const bytes = Buffer.from(readFileSync(join(sample, 'groom.hair')));
+    bytes.write('one more groom\0', 40); // in the 88 bytes of "info" of a HAIR header
+    await with_page(daemon.address, async page => {
+        await page.goto(`${daemon.address}/#/models`);
+        await page.evaluate(() => {
+            for (let size = 1 << 22; size >= 1; size /= 2)
+                try {
+                    for (let i = 0; ; ++i) localStorage.setItem(`filler ${size} ${i}`, 'x'.repeat(size));
+                } catch {
+                    // as much of it as there is room for
+                }
+        });
+        const file = { name: 'more.hair', mimeType: '', buffer: bytes };
+        await page.locator('.drop-zone input[type=file]').setInputFiles(file);
+        await page.locator('.job[data-phase=stored]').waitFor();
+        assert.equal((await fetch(`${daemon.address}/v1/models/${sha256(bytes)}`)).status, 200);
     });
 });
 
