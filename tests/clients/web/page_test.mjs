@@ -300,8 +300,14 @@ test('with tokens the page asks for one, takes the right one only, and forgets i
             await page.locator('.card').waitFor();
             const [cookie] = await page.context().cookies();
             assert.ok(cookie.httpOnly && cookie.sameSite === 'Strict');
+            await throttle(page, 0);
+            await page.getByRole('button', { name: 'Sign out' }).click();
+            await page.getByRole('alert').getByText('The service does not answer').waitFor();
+            await throttle(page, -1);
+            assert.match(await page.evaluate(() => JSON.stringify(localStorage)), /sky\.hdr/);
             await page.getByRole('button', { name: 'Sign out' }).click();
             await page.getByLabel('Token').waitFor();
+            assert.equal(await page.evaluate(() => JSON.stringify(localStorage)), '{}');
         });
     } finally {
         await locked.stop();

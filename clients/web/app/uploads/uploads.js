@@ -209,3 +209,9 @@ export function file_names() {
         return {};
     }
 }
+
+/** Forgets every file's name, also with the addresses of uploads (tus-js-client). */
+export function forget_names() {
+    for (const key of Object.keys(localStorage))
+        if (key === names_key || key.startsWith('tus::')) localStorage.removeItem(key);
+}
