@@ -528,6 +528,39 @@ test('a file is sent also where the browser has no room to remember it', async (
     });
 });
 
+test('a refused form brings the focus to the first fault, which is read with its field', async () => {
+    await with_page(daemon.address, async page => {
+        await open_form(page);
+        const words_of = field =>
+            field.evaluate(one =>
+                one
+                    .getAttribute('aria-describedby')
+                    .split(' ')
+                    .map(id => document.getElementById(id).textContent)
+                    .join(' '),
+            );
+        const focused = page.locator(':focus');
+        const bake_button = page.getByRole('button', { name: 'Bake', exact: true });
+        await bake_button.click();
+        await page.waitForFunction(() => document.activeElement.name === 'picker-Hair model');
+        assert.match(await words_of(page.getByRole('radiogroup', { name: 'Hair model' })), /or one of each is needed/);
+        await check_with_axe(page, 'refused form');
+        await page.locator(`input[type=radio][value="${sky}"]`).check();
+        await page.getByText('Irradiance', { exact: true }).click();
+        await page.getByRole('button', { name: 'Add a light' }).click();
+        const part = page.getByLabel('Light 1, irradiance, G');
+        await part.fill('-1');
+        assert.equal(await part.getAttribute('aria-invalid'), 'true');
+        assert.equal(await page.getByLabel('Light 1, irradiance, R').getAttribute('aria-invalid'), null);
+        assert.match(await words_of(part), /Directional lights.*is -1; allowed is 0 to/s);
+        await page.getByText('Irradiance: 1 changed, 1 to correct').click();
+        await part.waitFor({ state: 'hidden' });
+        await bake_button.click();
+        await part.waitFor();
+        assert.equal(await focused.getAttribute('aria-label'), 'Light 1, irradiance, G');
+    });
+});
+
 async function check_with_axe(page, name) {
     await page.evaluate(axe); // by the debugger, which the page's policy does not bind
     const { violations } = await page.evaluate(() => globalThis.axe.run(document, { resultTypes: ['violations'] }));

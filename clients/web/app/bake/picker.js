@@ -2,12 +2,13 @@
 import { html } from '../../vendor/preact.js';
 import { label_of, summary } from '../input_facts.js';
 
-/** value: a digest or ''; inputs: what use_inputs gives. */
-export function Picker({ kind, title, inputs, value, on_change, none }) {
+/** value: a digest or ''; inputs: what use_inputs gives; fault: the id of the words that say what is wrong, if any. */
+export function Picker({ kind, title, inputs, value, on_change, none, fault }) {
     const { items, names, files } = inputs;
     const name = `picker-${title}`;
     const choose = id => () => on_change(id);
-    return html`<fieldset><legend><strong>${title}</strong></legend>
+    return html`<fieldset role="radiogroup" aria-invalid=${fault ? 'true' : null} aria-describedby=${fault}>
+        <legend><strong>${title}</strong></legend>
         ${items?.length === 0 && html`<p>None is stored yet: <a href=${`#/${kind}s`}>send one</a>.</p>`}
         <div class="choices">
             ${none && html`<label class="choice"><input type="radio" name=${name} checked=${value === ''}

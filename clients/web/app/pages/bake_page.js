@@ -51,11 +51,20 @@ function Stage({ name, schema, values, base, wrong, on_change }) {
     <//>`;
 }
 
+/** Brings the focus to the first field that is wrong, also in a part of the form that is closed. */
+function focus_first_fault(form) {
+    const wrong = form.querySelector('[aria-invalid=true]');
+    for (let fold = wrong?.closest('details'); fold; fold = fold.parentElement.closest('details')) fold.open = true;
+    const field = wrong?.matches('fieldset') ? wrong.querySelector('input') : wrong;
+    (field ?? form.querySelector('.problem'))?.scrollIntoView({ block: 'center' });
+    field?.focus({ preventScroll: true });
+}
+
 // Also that of a part of it: "irradiance.tint.2".
 function fault_of(wrong, path) {
     const own = path.join('.');
     const found = Object.keys(wrong).find(other => other === own || other.startsWith(`${own}.`));
-    return found && wrong[found];
+    return found && { words: wrong[found], place: found.slice(own.length + 1) };
 }
 
 function Presets({ presets, value, on_change }) {
@@ -113,15 +122,14 @@ function Form({ schema, presets, query }) {
         set_base(fresh);
         set_settings({ ...fresh, occluder, receiver, outputs });
     };
+    const show_fault = () => setTimeout(() => focus_first_fault(form.current)); // once it is drawn
     const submit = async event => {
         event.preventDefault();
         set_asked(true);
         const count = Object.keys(wrong).length;
         if (count) {
             announce(`${count_words(count, 'field')} to correct.`);
-            setTimeout(() =>
-                form.current.querySelector('[aria-invalid=true], .problem')?.scrollIntoView({ block: 'center' }),
-            );
+            show_fault();
             return;
         }
         try {
@@ -129,20 +137,24 @@ function Form({ schema, presets, query }) {
             location.hash = `#/bakes/${id}`;
         } catch (failure) {
             set_problem(failure);
+            show_fault();
         }
     };
     const later = path => path === 'hair' || waits[path]; // shown only to who wants to go on nevertheless
     const visible = asked ? wrong : Object.fromEntries(Object.entries(wrong).filter(([path]) => !later(path)));
     return html`<form onSubmit=${submit} ref=${form} novalidate>
         <${Picker} kind="model" title="Hair model" inputs=${models} value=${hair.id} none="None: maps alone"
-            on_change=${id => choose(set_hair, { id })} />
+            fault=${visible.hair && 'fault-hair'} on_change=${id => choose(set_hair, { id })} />
         <${Reference} title="Hair model" paths=${models.names[hair.id]} value=${values.hair}
             on_change=${by => choose(set_hair, { ...hair, by })} />
         <${Picker} kind="environment" title="Environment" inputs=${environments} value=${environment.id}
-            none="None: transmittance alone" on_change=${id => choose(set_environment, { id })} />
+            none="None: transmittance alone" fault=${visible.environment && 'fault-environment'}
+            on_change=${id => choose(set_environment, { id })} />
         <${Reference} title="Environment" paths=${environments.names[environment.id]} value=${values.environment}
             on_change=${by => choose(set_environment, { ...environment, by })} />
-        ${visible.hair && html`<p class="problem" role="alert">${visible.hair}</p>`}
+        ${['hair', 'environment'].map(
+            name => visible[name] && html`<p class="problem" role="alert" id=${`fault-${name}`}>${visible[name]}</p>`,
+        )}
         <${Presets} presets=${presets} value=${preset} on_change=${take_preset} />
         ${stages.map(name => html`<${Stage} key=${name} name=${name} schema=${schema} values=${values} base=${base}
             wrong=${visible} on_change=${change} />`)}
@@ -155,11 +167,11 @@ function Form({ schema, presets, query }) {
                     on_wait=${words => set_waits(old => ({ ...old, [name]: words }))} />`,
             )}
             <${Field} path=${['priority']} schema=${schema.properties.priority} value=${values.priority}
-                fault=${visible.priority}
+                fault=${fault_of(visible, ['priority'])}
                 on_change=${value => change(['priority'], value)} />
         </div><//>
         <${Field} path=${['outputs']} schema=${schema.properties.outputs} value=${values.outputs}
-            fault=${visible.outputs}
+            fault=${fault_of(visible, ['outputs'])}
             on_change=${value => change(['outputs'], value)} />
         ${!values.outputs.includes('raw') && html`<p
             class="help">Without raw, this page has no maps, histogram or viewer for the bake.</p>`}

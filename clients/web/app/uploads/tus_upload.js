@@ -64,7 +64,7 @@ const options_of = (tus, file, sha256) => ({
     onShouldRetry: may_pass,
 });
 
-/** Resolves when the service has the whole file. on_progress(bytes); aborting `signal` ends the upload there as well. */
+/** Resolves when the service has the whole file. on_progress(bytes); aborting `signal` ends the upload there too. */
 export async function send_file(file, sha256, on_progress, signal) {
     const tus = await load_library();
     signal.throwIfAborted();

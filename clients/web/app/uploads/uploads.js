@@ -112,7 +112,7 @@ export class Uploads {
         }
     }
 
-    /** Sends what the service does not have; whether it had it. Another tab may be sending the same file: it is first. */
+    /** Sends what the service does not have; true where it had it. Another tab that sends the same file is first. */
     async #give(job, sha256, signal) {
         const turn = hold(sha256);
         const stopped = new Promise((_, reject) => signal.addEventListener('abort', () => reject(signal.reason)));
@@ -153,9 +153,9 @@ function random_id() {
 }
 
 /**
- * What one tab at a time may have: a kept file by its id, the sending of a file by its digest. The browser takes it back
- * from a tab that is gone. There are such locks only where the page is at home or comes over TLS; elsewhere every tab
- * takes up what it finds.
+ * What one tab at a time may have: a kept file by its id, the sending of a file by its digest. The browser takes it
+ * back from a tab that is gone. There are such locks only where the page is at home or comes over TLS; elsewhere every
+ * tab takes up what it finds.
  */
 function hold(id) {
     let release;
