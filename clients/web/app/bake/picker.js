@@ -10,7 +10,7 @@ export function Picker({ kind, title, inputs, value, on_change, none, fault }) {
     return html`<fieldset role="radiogroup" aria-invalid=${fault ? 'true' : null} aria-describedby=${fault}>
         <legend><strong>${title}</strong></legend>
         ${items?.length === 0 && html`<p>None is stored yet: <a href=${`#/${kind}s`}>send one</a>.</p>`}
-        <div class="choices">
+        <div class="choices" hidden=${!none && items?.length === 0}>
             ${none && html`<label class="choice"><input type="radio" name=${name} checked=${value === ''}
                 onChange=${choose('')} /> ${none}</label>`}
             ${(items ?? []).map(
