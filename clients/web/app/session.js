@@ -1,7 +1,9 @@
-// A token is exchanged for a cookie that scripts cannot read; the page keeps nothing but that there is one.
+// A token is exchanged for a cookie that scripts cannot read; the page keeps nothing of it but that there is one.
 import { html, useState } from '../vendor/preact.js';
 import { use_app } from './hooks.js';
 import { ProblemNote } from './parts.js';
+import { forget_files } from './uploads/kept_files.js';
+import { forget_names } from './uploads/uploads.js';
 
 const flag = 'hairbake.session';
 
@@ -34,11 +36,19 @@ export function TokenForm({ on_open }) {
 
 export function SignOut() {
     const { api } = use_app();
+    const [problem, set_problem] = useState(null);
     if (localStorage.getItem(flag) === null) return null;
     const close = async () => {
-        await api.remove('/v1/session');
+        try {
+            await api.remove('/v1/session');
+        } catch (failure) {
+            if (failure.status !== 401) return set_problem(failure); // else it has ended already
+        }
         localStorage.removeItem(flag);
+        forget_names();
+        await forget_files();
         location.reload();
     };
-    return html`<li><button class="outline small" onClick=${close}>Sign out</button></li>`;
+    return html`<li><button class="outline small" onClick=${close}>Sign out</button>
+        <${ProblemNote} problem=${problem} /></li>`;
 }

@@ -2,7 +2,14 @@
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
 import { test } from 'node:test';
-import { build_request, differences, first_values, merged, with_value } from '../../../clients/web/app/bake/request.js';
+import {
+    build_request,
+    differences,
+    first_values,
+    merged,
+    reference_to,
+    with_value,
+} from '../../../clients/web/app/bake/request.js';
 import { defaults_of, faults, fields_of, range_words } from '../../../clients/web/app/bake/schema.js';
 import { warnings } from '../../../clients/web/app/input_facts.js';
 import {
@@ -189,4 +196,14 @@ test('addresses are taken apart, broken ones too', () => {
     assert.deepEqual(read_route('#/bakes/ab%20c?x=1'), { path: ['bakes', 'ab c'], query: { x: '1' } });
     assert.deepEqual(read_route('#/names/%zz'), { path: ['names', '%zz'], query: {} });
     assert.deepEqual(read_route(''), { path: [], query: {} });
+});
+
+test('a request asks by the first name of a file, by the chosen one, or by digest', () => {
+    const names = { abc: ['stage/dawn', 'stage/dusk'] };
+    assert.equal(reference_to({ id: '' }, names), null);
+    assert.equal(reference_to({ id: 'abc' }, names), 'name:stage/dawn');
+    assert.equal(reference_to({ id: 'abc', by: 'name:stage/dusk' }, names), 'name:stage/dusk');
+    assert.equal(reference_to({ id: 'abc', by: 'name:gone' }, names), 'name:stage/dawn');
+    assert.equal(reference_to({ id: 'abc', by: '' }, names), 'sha256:abc');
+    assert.equal(reference_to({ id: 'def' }, names), 'sha256:def');
 });

@@ -300,8 +300,14 @@ test('with tokens the page asks for one, takes the right one only, and forgets i
             await page.locator('.card').waitFor();
             const [cookie] = await page.context().cookies();
             assert.ok(cookie.httpOnly && cookie.sameSite === 'Strict');
+            await throttle(page, 0);
+            await page.getByRole('button', { name: 'Sign out' }).click();
+            await page.getByRole('alert').getByText('The service does not answer').waitFor();
+            await throttle(page, -1);
+            assert.match(await page.evaluate(() => JSON.stringify(localStorage)), /sky\.hdr/);
             await page.getByRole('button', { name: 'Sign out' }).click();
             await page.getByLabel('Token').waitFor();
+            assert.equal(await page.evaluate(() => JSON.stringify(localStorage)), '{}');
         });
     } finally {
         await locked.stop();
@@ -334,6 +340,225 @@ test('the policy stops a script that stands in a page', async () => {
         'and the browser says so',
     );
     await context.close();
+});
+
+async function open_form(page, query = '') {
+    await page.goto(`${daemon.address}/#/bake${query}`);
+    await page.getByRole('button', { name: 'Bake', exact: true }).waitFor();
+}
+
+const request_of_form = async page => JSON.parse(await page.locator('form pre').textContent());
+
+test('numbers are taken as they are typed', async () => {
+    await with_page(daemon.address, async page => {
+        await open_form(page);
+        await page.getByText('Irradiance', { exact: true }).click();
+        const type = async (field, text) => {
+            await field.fill('');
+            await field.pressSequentially(text);
+            assert.equal(await field.inputValue(), text);
+        };
+        await type(page.getByLabel('Exponent', { exact: true }), '10.05');
+        await type(page.getByLabel('Rotation, degrees, X'), '-0.5');
+        await type(page.getByLabel(/^Tint.*, R$/), '0.02');
+        const { irradiance } = await request_of_form(page);
+        assert.deepEqual(irradiance, { exponent: 10.05, rotation_deg: [-0.5, 0, 0], tint: [0.02, 1, 1] });
+        await page.getByLabel('Preset').selectOption('draft'); // what it sets replaces what was typed
+        assert.equal(await page.getByLabel(/^Tint.*, R$/).inputValue(), '1');
+    });
+});
+
+test('a stage of the form stays open while one types in it', async () => {
+    await with_page(daemon.address, async page => {
+        await open_form(page);
+        await page.getByText('Irradiance', { exact: true }).click();
+        const size = page.getByLabel('Face size');
+        await size.fill('3');
+        await page.getByText('Irradiance: 1 changed, 1 to correct').waitFor();
+        await size.press('End');
+        await size.pressSequentially('2');
+        await page.getByText('Irradiance: 1 changed', { exact: true }).waitFor();
+        assert.ok(await size.isVisible());
+        assert.ok(await size.evaluate(field => field === document.activeElement));
+        await page.getByText('Irradiance: 1 changed', { exact: true }).click();
+        await size.waitFor({ state: 'hidden' });
+    });
+});
+
+test('a bake asked for in the form by name follows the name to its new version', async () => {
+    const studio = await daemon.add('environment', join(sample, 'studio.hdr'));
+    await with_page(daemon.address, async page => {
+        await page.goto(`${daemon.address}/#/environments`);
+        const card = page.locator(`.card[data-id="${sky}"]`);
+        await card.getByText('Name it').click();
+        await card.getByLabel('Name').first().fill('stage/dawn');
+        await card.getByRole('button', { name: 'Put the name here' }).click();
+        await card.getByRole('link', { name: 'stage/dawn', exact: true }).waitFor();
+        await card.getByRole('button', { name: /^Bake with/ }).click();
+        await page.locator(`input[type=radio][value="${groom}"]`).check();
+        await page.getByLabel('Preset').selectOption('draft');
+        const by = page.getByLabel('Environment: asked for by');
+        assert.equal((await request_of_form(page)).environment, 'name:stage/dawn');
+        await by.selectOption('this file');
+        assert.equal((await request_of_form(page)).environment, `sha256:${sky}`);
+        await by.selectOption('name:stage/dawn');
+        await page.getByRole('button', { name: 'Bake', exact: true }).click();
+        await page.waitForURL(/#\/bakes\/[0-9a-f]{64}$/);
+        await daemon.finished(page.url().split('#/bakes/')[1]);
+        await page.goto(`${daemon.address}/#/names/environment/stage/dawn`);
+        await page.getByLabel('File').selectOption(studio);
+        await page.getByRole('button', { name: 'Put as version 2' }).click();
+        await page.getByText('1 bake asked for this name, 1 of them for an older version.').waitFor();
+        await page.getByRole('button', { name: /Bake with the newest version/ }).waitFor();
+    });
+});
+
+test('a bake does not begin before its mesh is sent', async () => {
+    const file = join(sample, 'large.obj');
+    writeFileSync(file, `${readFileSync(join(sample, 'head.obj'), 'utf8')}\n${'# room\n'.repeat(2e6)}`);
+    await with_page(daemon.address, async page => {
+        const posts = [];
+        page.on('request', request => request.url().endsWith('/v1/bakes') && posts.push(request.method()));
+        await open_form(page, `?environment=${sky}`);
+        await page.locator(`input[type=radio][value="${groom}"]`).check();
+        await page.getByText('Meshes and priority').click();
+        await throttle(page, slow);
+        await page.getByLabel('Send an OBJ file as occluder').setInputFiles(file);
+        await page.getByRole('button', { name: 'Bake', exact: true }).click();
+        const occluder = page.getByRole('combobox', { name: 'Occluder' });
+        await page.locator('.problem', { hasText: 'large.obj is still being sent.' }).waitFor();
+        assert.equal(await occluder.getAttribute('aria-invalid'), 'true');
+        assert.deepEqual(posts, []);
+        await throttle(page, -1);
+        await page.locator('.problem').waitFor({ state: 'detached' });
+        assert.equal((await request_of_form(page)).occluder, `sha256:${sha256(readFileSync(file))}`);
+    });
+});
+
+test('Cancel ends an upload here and on the service, and the next file goes on', async () => {
+    const [file, next] = [large_groom(13), large_groom(14)];
+    await with_page(daemon.address, async page => {
+        const uploads = [];
+        page.on('request', request => request.method() === 'PATCH' && uploads.push(request.url()));
+        await send_slowly(page, [file, next]);
+        await page.getByRole('button', { name: 'Cancel' }).first().click();
+        await throttle(page, -1);
+        await page.locator('.job[data-phase=stored]').waitFor();
+        await assert_stored(next);
+        assert.equal(await page.locator('.job').count(), 1);
+        const head = async () =>
+            (await fetch(uploads[0], { method: 'HEAD', headers: { 'Tus-Resumable': '1.0.0' } })).status;
+        for (const end = Date.now() + 10000; (await head()) === 200 && Date.now() < end;)
+            await page.waitForTimeout(100);
+        assert.ok([404, 410].includes(await head()), `the upload is still there: ${await head()}`);
+        assert.equal((await fetch(`${daemon.address}/v1/models/${sha256(readFileSync(file))}`)).status, 404);
+    });
+});
+
+test('Cancel before anything is sent keeps it from being sent', async () => {
+    await with_page(daemon.address, async page => {
+        const sent = [];
+        page.on('request', request => request.url().includes('/v1/uploads') && sent.push(request.method()));
+        let asked, cancelled;
+        const question = new Promise(resolve => (asked = resolve));
+        const cancel = new Promise(resolve => (cancelled = resolve));
+        await page.route('**/v1/blobs/*', async route => {
+            asked();
+            await cancel;
+            await route.continue().catch(() => {}); // the page has taken the question back
+        });
+        await page.goto(`${daemon.address}/#/environments`);
+        const file = { name: 'never.hdr', mimeType: '', buffer: Buffer.from('never sent') };
+        await page.locator('.drop-zone input[type=file]').setInputFiles(file);
+        await question;
+        await page.getByRole('button', { name: 'Cancel: never.hdr' }).click();
+        await page.locator('.job').waitFor({ state: 'detached' });
+        cancelled();
+        await page.unrouteAll({ behavior: 'wait' });
+        await page.locator('.drop-zone input[type=file]').setInputFiles(join(sample, 'sky.hdr'));
+        await page.getByText('the service had it already: nothing was sent').waitFor(); // the queue goes on
+        assert.deepEqual(sent, []);
+    });
+});
+
+test('a second tab leaves an upload to the first one until that is closed', async () => {
+    const file = large_groom(15);
+    await with_page(daemon.address, async (page, context) => {
+        let begun;
+        const first_piece = new Promise(resolve => (begun = resolve));
+        await page.route('**/v1/uploads/*', route => {
+            if (Number(route.request().headers()['upload-offset']) > 0) begun(); // the second piece never arrives
+            else route.continue();
+        });
+        await page.goto(`${daemon.address}/#/models`);
+        await page.locator('.drop-zone input[type=file]').setInputFiles(file);
+        await first_piece;
+        const other = await context.newPage();
+        const offsets = watch_patches(other);
+        await other.goto(`${daemon.address}/#/models`);
+        await other.locator('.card').first().waitFor();
+        await other.waitForTimeout(500);
+        assert.equal(await other.locator('.job').count(), 0);
+        assert.deepEqual(offsets, []);
+        assert.equal(await page.locator('.job[data-phase=sending]').count(), 1);
+        await page.goto('about:blank'); // closing would first let the piece pass that is held here
+        await other.locator('.job[data-phase=stored]').waitFor({ timeout: patience_ms });
+        assert.ok(offsets.at(0) > 0, `the first PATCH began at ${offsets.at(0)}`);
+        await assert_stored(file);
+    });
+});
+
+test('a file is sent also where the browser has no room to remember it', async () => {
+    const bytes = Buffer.from(readFileSync(join(sample, 'groom.hair')));
+    bytes.write('one more groom\0', 40); // in the 88 bytes of "info" of a HAIR header
+    await with_page(daemon.address, async page => {
+        await page.goto(`${daemon.address}/#/models`);
+        await page.evaluate(() => {
+            for (let size = 1 << 22; size >= 1; size /= 2)
+                try {
+                    for (let i = 0; ; ++i) localStorage.setItem(`filler ${size} ${i}`, 'x'.repeat(size));
+                } catch {
+                    // as much of it as there is room for
+                }
+        });
+        const file = { name: 'more.hair', mimeType: '', buffer: bytes };
+        await page.locator('.drop-zone input[type=file]').setInputFiles(file);
+        await page.locator('.job[data-phase=stored]').waitFor();
+        assert.equal((await fetch(`${daemon.address}/v1/models/${sha256(bytes)}`)).status, 200);
+    });
+});
+
+test('a refused form brings the focus to the first fault, which is read with its field', async () => {
+    await with_page(daemon.address, async page => {
+        await open_form(page);
+        const words_of = field =>
+            field.evaluate(one =>
+                one
+                    .getAttribute('aria-describedby')
+                    .split(' ')
+                    .map(id => document.getElementById(id).textContent)
+                    .join(' '),
+            );
+        const focused = page.locator(':focus');
+        const bake_button = page.getByRole('button', { name: 'Bake', exact: true });
+        await bake_button.click();
+        await page.waitForFunction(() => document.activeElement.name === 'picker-Hair model');
+        assert.match(await words_of(page.getByRole('radiogroup', { name: 'Hair model' })), /or one of each is needed/);
+        await check_with_axe(page, 'refused form');
+        await page.locator(`input[type=radio][value="${sky}"]`).check();
+        await page.getByText('Irradiance', { exact: true }).click();
+        await page.getByRole('button', { name: 'Add a light' }).click();
+        const part = page.getByLabel('Light 1, irradiance, G');
+        await part.fill('-1');
+        assert.equal(await part.getAttribute('aria-invalid'), 'true');
+        assert.equal(await page.getByLabel('Light 1, irradiance, R').getAttribute('aria-invalid'), null);
+        assert.match(await words_of(part), /Directional lights.*is -1; allowed is 0 to/s);
+        await page.getByText('Irradiance: 1 changed, 1 to correct').click();
+        await part.waitFor({ state: 'hidden' });
+        await bake_button.click();
+        await part.waitFor();
+        assert.equal(await focused.getAttribute('aria-label'), 'Light 1, irradiance, G');
+    });
 });
 
 async function check_with_axe(page, name) {

@@ -1,18 +1,24 @@
 // One field of the request as the schema describes it: name, unit, range, a line of help, and what is wrong with it.
-import { html } from '../../vendor/preact.js';
+import { html, useState } from '../../vendor/preact.js';
 import { title_words } from '../words.js';
 import { number_part, range_words, takes_null, word_of } from './schema.js';
 
 const to_number = text => (text.trim() === '' ? null : Number(text));
 const shown = value => (typeof value === 'number' ? String(value) : '');
 
-function NumberInput({ id, schema, value, on_change, label, described, invalid }) {
+function NumberInput({ id, schema, value = null, on_change, label, described, invalid }) {
     const part = number_part(schema);
+    const [typed, set_typed] = useState('');
+    const text = to_number(typed) === value ? typed : shown(value); // "0.0" on the way to "0.02" stays as it is
+    const type = event => {
+        set_typed(event.target.value);
+        on_change(to_number(event.target.value));
+    };
     return html`<input id=${id} type="number" step=${part.type === 'integer' ? 1 : 'any'} min=${part.minimum}
         max=${part.maximum}
-        value=${shown(value)} aria-label=${label} aria-describedby=${described} aria-invalid=${invalid ? 'true' : null}
+        value=${text} aria-label=${label} aria-describedby=${described} aria-invalid=${invalid ? 'true' : null}
         placeholder=${takes_null(schema) ? 'as the file says' : null}
-        onInput=${event => on_change(to_number(event.target.value))} />`;
+        onInput=${type} />`;
 }
 
 /** A number, or the word that the schema allows in its place. */
@@ -29,10 +35,16 @@ function NumberOrWord({ id, schema, value, on_change, described, invalid }) {
     </div>`;
 }
 
-function Triple({ schema, value, on_change, described, invalid, title, parts = ['X', 'Y', 'Z'] }) {
+/** What of a fault's place lies below `name`: '' is all of it, null is nothing. */
+function below(place, name) {
+    if (place === '' || place === name) return '';
+    return place?.startsWith(`${name}.`) ? place.slice(name.length + 1) : null;
+}
+
+function Triple({ schema, value, on_change, described, place, title, parts = ['X', 'Y', 'Z'] }) {
     return html`<div class="row">${parts.map(
         (part, i) => html`<${NumberInput} key=${part} schema=${schema.items} value=${value?.[i]}
-        label=${`${title}, ${part}`} described=${described} invalid=${invalid}
+        label=${`${title}, ${part}`} described=${described} invalid=${below(place, String(i)) !== null}
         on_change=${number => on_change(value.map((old, j) => (j === i ? number : old)))} />`,
     )}</div>`;
 }
@@ -48,10 +60,11 @@ const output_help = {
     vdb: 'the density grid: Blender, OpenVDB',
 };
 
-function Choices({ schema, value, on_change }) {
+function Choices({ schema, value, on_change, described, invalid }) {
     return html`<div class="fields">${schema.items.enum.map(
         one => html`<label key=${one}>
-        <input type="checkbox" checked=${value.includes(one)} onChange=${event =>
+        <input type="checkbox" checked=${value.includes(one)} aria-describedby=${invalid ? described : null}
+            aria-invalid=${invalid ? 'true' : null} onChange=${event =>
             on_change(
                 schema.items.enum.filter(other => (other === one ? event.target.checked : value.includes(other))),
             )} />
@@ -59,7 +72,7 @@ function Choices({ schema, value, on_change }) {
     )}</div>`;
 }
 
-function Lights({ schema, value, on_change }) {
+function Lights({ schema, value, on_change, described, place }) {
     const change = (i, name, part) =>
         on_change(value.map((light, j) => (j === i ? { ...light, [name]: part } : light)));
     const fresh = { direction: [0, 1, 0], irradiance: [1, 1, 1] };
@@ -67,10 +80,10 @@ function Lights({ schema, value, on_change }) {
         ${value.map(
             (light, i) => html`<div class="light" key=${i} role="group" aria-label=${`Light ${i + 1}`}>
             <div>Direction <${Triple} schema=${schema.items.properties.direction} value=${light.direction}
-                title=${`Light ${i + 1}, direction`}
+                title=${`Light ${i + 1}, direction`} described=${described} place=${below(place, `${i}.direction`)}
                 on_change=${part => change(i, 'direction', part)} /></div>
             <div>Irradiance <${Triple} schema=${schema.items.properties.irradiance} value=${light.irradiance}
-                title=${`Light ${i + 1}, irradiance`}
+                title=${`Light ${i + 1}, irradiance`} described=${described} place=${below(place, `${i}.irradiance`)}
                 parts=${['R', 'G', 'B']} on_change=${part => change(i, 'irradiance', part)} /></div>
             <button type="button" class="small secondary outline"
                 onClick=${() => on_change(value.filter((_, j) => j !== i))}>Remove light ${i + 1}</button>
@@ -92,16 +105,17 @@ function control_of(path, schema) {
     return [NumberInput, false];
 }
 
-function Select({ id, schema, value, on_change, described }) {
-    return html`<select id=${id} aria-describedby=${described} onChange=${event => on_change(event.target.value)}>
+function Select({ id, schema, value, on_change, described, invalid }) {
+    return html`<select id=${id} aria-describedby=${described} aria-invalid=${invalid ? 'true' : null}
+        onChange=${event => on_change(event.target.value)}>
         ${schema.enum.map(one => html`<option key=${one} value=${one} selected=${one === value}>${one}</option>`)}
     </select>`;
 }
 
 function Help({ id, schema, fault }) {
     const range = schema.enum || schema.items?.enum ? '' : range_words(schema); // lists show what there is
-    return html`<small id=${id}>${schema.description}${range && ` (${range}.)`}</small>
-        ${fault && html`<small class="problem">${fault}</small>`}`;
+    return html`<small id=${`${id}-help`}>${schema.description}${range && ` (${range}.)`}</small>
+        ${fault && html`<small class="problem" id=${`${id}-fault`}>${fault.words}</small>`}`;
 }
 
 /** "Face size, texels", "SH bands: diffuse". */
@@ -111,16 +125,18 @@ function title_of(path, unit) {
     return unit && !title.toLowerCase().includes(unit) ? `${title}, ${unit}` : title;
 }
 
-/** path: the field's place in the request; fault: what is wrong with the value, in words, or undefined. */
+/** path: the field's place in the request; fault: { words, place: the wrong part of the value, '' for all }, if any. */
 export function Field({ path, schema, value, on_change, fault, changed }) {
     const id = `field-${path.join('-')}`;
     const title = title_of(path, schema['x-unit']);
-    const common = { id, schema, value, on_change, described: `${id}-help`, invalid: Boolean(fault), title };
+    const invalid = Boolean(fault);
+    const described = invalid ? `${id}-help ${id}-fault` : `${id}-help`;
+    const common = { id, schema, value, on_change, described, invalid, place: fault?.place, title };
     const mark = `field ${changed ? 'changed' : ''}`;
-    const help = html`<${Help} id=${`${id}-help`} schema=${schema} fault=${fault} />`;
+    const help = html`<${Help} id=${id} schema=${schema} fault=${fault} />`;
     if (schema.type === 'boolean')
         return html`<div class=${mark}><label><input id=${id} type="checkbox" role="switch" checked=${value}
-            aria-describedby=${`${id}-help`}
+            aria-describedby=${described} aria-invalid=${invalid ? 'true' : null}
             onChange=${event => on_change(event.target.checked)} /> ${title}</label>${help}</div>`;
     const [Control, group] = control_of(path, schema);
     const parts = path.at(-1) === 'tint' ? ['R', 'G', 'B'] : undefined;

@@ -2,14 +2,15 @@
 import { html } from '../../vendor/preact.js';
 import { label_of, summary } from '../input_facts.js';
 
-/** value: a digest or ''; inputs: what use_inputs gives. */
-export function Picker({ kind, title, inputs, value, on_change, none }) {
+/** value: a digest or ''; inputs: what use_inputs gives; fault: the id of the words that say what is wrong, if any. */
+export function Picker({ kind, title, inputs, value, on_change, none, fault }) {
     const { items, names, files } = inputs;
     const name = `picker-${title}`;
     const choose = id => () => on_change(id);
-    return html`<fieldset><legend><strong>${title}</strong></legend>
+    return html`<fieldset role="radiogroup" aria-invalid=${fault ? 'true' : null} aria-describedby=${fault}>
+        <legend><strong>${title}</strong></legend>
         ${items?.length === 0 && html`<p>None is stored yet: <a href=${`#/${kind}s`}>send one</a>.</p>`}
-        <div class="choices">
+        <div class="choices" hidden=${!none && items?.length === 0}>
             ${none && html`<label class="choice"><input type="radio" name=${name} checked=${value === ''}
                 onChange=${choose('')} /> ${none}</label>`}
             ${(items ?? []).map(
@@ -22,4 +23,18 @@ export function Picker({ kind, title, inputs, value, on_change, none }) {
             )}
         </div>
     </fieldset>`;
+}
+
+/** How a request asks for the chosen file: by one of the names that point at it now, or by its digest. */
+export function Reference({ title, paths, value, on_change }) {
+    const id = `reference-${title.replaceAll(' ', '-')}`;
+    if (!paths) return null;
+    return html`<div class="field"><label for=${id}>${title}: asked for by</label>
+        <select id=${id} aria-describedby=${`${id}-help`} onChange=${event => on_change(event.target.value)}>
+            ${paths.map(path => html`<option key=${path} value=${`name:${path}`} selected=${value === `name:${path}`}>
+                name:${path}</option>`)}
+            <option value="" selected=${!value.startsWith('name:')}>this file</option>
+        </select>
+        <small id=${`${id}-help`}>A bake asked for by name can follow the name's new versions.</small>
+    </div>`;
 }

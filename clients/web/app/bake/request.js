@@ -49,3 +49,14 @@ export function differences(schema, a, b) {
         .filter(path => JSON.stringify(value_at(a, path)) !== JSON.stringify(value_at(b, path)))
         .map(path => path.join('.'));
 }
+
+/**
+ * What a request calls an input: chosen is { id: digest or '', by: 'name:...', '' for the file itself, or undefined for
+ * its first name where it has one }; names: { sha256: [path] }.
+ */
+export function reference_to({ id, by }, names) {
+    if (!id) return null;
+    const known = (names[id] ?? []).map(path => `name:${path}`);
+    if (by === '' || known.length === 0) return `sha256:${id}`;
+    return known.includes(by) ? by : known[0];
+}

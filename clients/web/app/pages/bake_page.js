@@ -2,8 +2,16 @@
 import { html, useEffect, useMemo, useRef, useState } from '../../vendor/preact.js';
 import { Field } from '../bake/field.js';
 import { MeshField } from '../bake/mesh_field.js';
-import { Picker } from '../bake/picker.js';
-import { build_request, differences, first_values, merged, value_at, with_value } from '../bake/request.js';
+import { Picker, Reference } from '../bake/picker.js';
+import {
+    build_request,
+    differences,
+    first_values,
+    merged,
+    reference_to,
+    value_at,
+    with_value,
+} from '../bake/request.js';
 import { faults, fields_of } from '../bake/schema.js';
 import { use_inputs } from '../gallery.js';
 import { use_app } from '../hooks.js';
@@ -11,8 +19,16 @@ import { Loading, ProblemNote } from '../parts.js';
 import { count_words, title_words } from '../words.js';
 
 const stages = ['strand', 'transmittance', 'irradiance'];
-const digest_of = value => value?.replace(/^sha256:/, '') ?? '';
-const named = digest => (digest ? `sha256:${digest}` : null);
+
+/** A part of the form: what is wrong in it opens it, people alone close it. */
+function Fold({ title, faulty, children }) {
+    const [open, set_open] = useState(faulty);
+    useEffect(() => {
+        if (faulty) set_open(true);
+    }, [faulty]);
+    return html`<details class="stage" open=${open} onToggle=${event => set_open(event.currentTarget.open)}>
+        <summary>${title}</summary>${children}</details>`;
+}
 
 function Stage({ name, schema, values, base, wrong, on_change }) {
     const part = { properties: { [name]: schema.properties[name] } };
@@ -21,8 +37,8 @@ function Stage({ name, schema, values, base, wrong, on_change }) {
     const note = [changed.length && `${changed.length} changed`, bad.length && `${bad.length} to correct`]
         .filter(Boolean)
         .join(', ');
-    return html`<details class="stage" open=${bad.length > 0 || null}><summary>
-        ${title_words(name)}${note && `: ${note}`}</summary>
+    const title = title_words(name) + (note && `: ${note}`);
+    return html`<${Fold} title=${title} faulty=${bad.length > 0}>
         <p>${schema.properties[name].description}</p>
         <div class="fields">
             ${fields_of(part).map(
@@ -32,14 +48,23 @@ function Stage({ name, schema, values, base, wrong, on_change }) {
                 on_change=${value => on_change(path, value)} />`,
             )}
         </div>
-    </details>`;
+    <//>`;
+}
+
+/** Brings the focus to the first field that is wrong, also in a part of the form that is closed. */
+function focus_first_fault(form) {
+    const wrong = form.querySelector('[aria-invalid=true]');
+    for (let fold = wrong?.closest('details'); fold; fold = fold.parentElement.closest('details')) fold.open = true;
+    const field = wrong?.matches('fieldset') ? wrong.querySelector('input') : wrong;
+    (field ?? form.querySelector('.problem'))?.scrollIntoView({ block: 'center' });
+    field?.focus({ preventScroll: true });
 }
 
 // Also that of a part of it: "irradiance.tint.2".
 function fault_of(wrong, path) {
     const own = path.join('.');
     const found = Object.keys(wrong).find(other => other === own || other.startsWith(`${own}.`));
-    return found && wrong[found];
+    return found && { words: wrong[found], place: found.slice(own.length + 1) };
 }
 
 function Presets({ presets, value, on_change }) {
@@ -62,37 +87,49 @@ function Form({ schema, presets, query }) {
     const start = useMemo(() => first_values(schema), [schema]);
     const [preset, set_preset] = useState('');
     const [base, set_base] = useState(start);
-    const [values, set_values] = useState({ ...start, hair: named(query.hair), environment: named(query.environment) });
+    const [settings, set_settings] = useState(start);
+    const [hair, set_hair] = useState({ id: query.hair ?? '' });
+    const [environment, set_environment] = useState({ id: query.environment ?? '' });
+    const [waits, set_waits] = useState({}); // by field: the file that is not there yet, in words
     const [asked, set_asked] = useState(false);
     const [problem, set_problem] = useState(null);
     const form = useRef(null);
 
+    const values = {
+        ...settings,
+        hair: reference_to(hair, models.names),
+        environment: reference_to(environment, environments.names),
+    };
     const request = build_request(schema, values);
     const wrong = Object.fromEntries(
         faults(schema, request).map(({ path, words }) => [path, `${title_words(path)} ${words}.`]),
     );
     if (!values.hair && !values.environment) wrong.hair = 'A hair model, an environment, or one of each is needed.';
+    for (const [name, words] of Object.entries(waits)) if (words) wrong[name] = words;
     if (problem?.field) wrong[problem.field.replaceAll(/\[(\d+)\]/g, '.$1')] = problem.message;
     const change = (path, value) => {
         set_problem(null);
-        set_values(old => with_value(old, path, value));
+        set_settings(old => with_value(old, path, value));
+    };
+    const choose = (set, chosen) => {
+        set_problem(null);
+        set(chosen);
     };
     const take_preset = name => {
-        const settings = merged(start, presets.find(one => one.name === name)?.request ?? {});
-        const { hair, environment, occluder, receiver, outputs } = values;
+        const fresh = merged(start, presets.find(one => one.name === name)?.request ?? {});
+        const { occluder, receiver, outputs } = settings;
         set_preset(name);
-        set_base(settings);
-        set_values({ ...settings, hair, environment, occluder, receiver, outputs });
+        set_base(fresh);
+        set_settings({ ...fresh, occluder, receiver, outputs });
     };
+    const show_fault = () => setTimeout(() => focus_first_fault(form.current)); // once it is drawn
     const submit = async event => {
         event.preventDefault();
         set_asked(true);
         const count = Object.keys(wrong).length;
         if (count) {
             announce(`${count_words(count, 'field')} to correct.`);
-            setTimeout(() =>
-                form.current.querySelector('[aria-invalid=true], .problem')?.scrollIntoView({ block: 'center' }),
-            );
+            show_fault();
             return;
         }
         try {
@@ -100,32 +137,41 @@ function Form({ schema, presets, query }) {
             location.hash = `#/bakes/${id}`;
         } catch (failure) {
             set_problem(failure);
+            show_fault();
         }
     };
-    const visible = asked ? wrong : Object.fromEntries(Object.entries(wrong).filter(([path]) => path !== 'hair'));
+    const later = path => path === 'hair' || waits[path]; // shown only to who wants to go on nevertheless
+    const visible = asked ? wrong : Object.fromEntries(Object.entries(wrong).filter(([path]) => !later(path)));
     return html`<form onSubmit=${submit} ref=${form} novalidate>
-        <${Picker} kind="model" title="Hair model" inputs=${models} value=${digest_of(values.hair)}
-            none="None: maps alone"
-            on_change=${id => change(['hair'], named(id))} />
-        <${Picker} kind="environment" title="Environment" inputs=${environments}
-            value=${digest_of(values.environment)} none="None: transmittance alone"
-            on_change=${id => change(['environment'], named(id))} />
-        ${visible.hair && html`<p class="problem" role="alert">${visible.hair}</p>`}
+        <${Picker} kind="model" title="Hair model" inputs=${models} value=${hair.id} none="None: maps alone"
+            fault=${visible.hair && 'fault-hair'} on_change=${id => choose(set_hair, { id })} />
+        <${Reference} title="Hair model" paths=${models.names[hair.id]} value=${values.hair}
+            on_change=${by => choose(set_hair, { ...hair, by })} />
+        <${Picker} kind="environment" title="Environment" inputs=${environments} value=${environment.id}
+            none="None: transmittance alone" fault=${visible.environment && 'fault-environment'}
+            on_change=${id => choose(set_environment, { id })} />
+        <${Reference} title="Environment" paths=${environments.names[environment.id]} value=${values.environment}
+            on_change=${by => choose(set_environment, { ...environment, by })} />
+        ${['hair', 'environment'].map(
+            name => visible[name] && html`<p class="problem" role="alert" id=${`fault-${name}`}>${visible[name]}</p>`,
+        )}
         <${Presets} presets=${presets} value=${preset} on_change=${take_preset} />
         ${stages.map(name => html`<${Stage} key=${name} name=${name} schema=${schema} values=${values} base=${base}
             wrong=${visible} on_change=${change} />`)}
-        <details class="stage"><summary>Meshes and priority</summary><div class="fields">
+        <${Fold} title="Meshes and priority"
+            faulty=${['occluder', 'receiver', 'priority'].some(name => visible[name])}><div class="fields">
             ${['occluder', 'receiver'].map(
                 name => html`<${MeshField} key=${name} name=${name} schema=${schema.properties[name]}
                     value=${values[name]}
-                fault=${visible[name]} on_change=${value => change([name], value)} />`,
+                    fault=${visible[name]} on_change=${value => change([name], value)}
+                    on_wait=${words => set_waits(old => ({ ...old, [name]: words }))} />`,
             )}
             <${Field} path=${['priority']} schema=${schema.properties.priority} value=${values.priority}
-                fault=${visible.priority}
+                fault=${fault_of(visible, ['priority'])}
                 on_change=${value => change(['priority'], value)} />
-        </div></details>
+        </div><//>
         <${Field} path=${['outputs']} schema=${schema.properties.outputs} value=${values.outputs}
-            fault=${visible.outputs}
+            fault=${fault_of(visible, ['outputs'])}
             on_change=${value => change(['outputs'], value)} />
         ${!values.outputs.includes('raw') && html`<p
             class="help">Without raw, this page has no maps, histogram or viewer for the bake.</p>`}

@@ -30,3 +30,5 @@ async function with_store(mode, act) {
 export const keep_file = entry => with_store('readwrite', store => store.put(entry)).catch(() => {});
 export const forget_file = id => with_store('readwrite', store => store.delete(id)).catch(() => {});
 export const kept_files = () => with_store('readonly', store => store.getAll()).catch(() => []);
+export const kept_file = id => with_store('readonly', store => store.get(id)).catch(() => undefined);
+export const forget_files = () => with_store('readwrite', store => store.clear()).catch(() => {});

@@ -37,30 +37,67 @@ function words_of(error) {
     }
 }
 
-/** Resolves when the service has the whole file. on_progress(bytes); aborting `signal` keeps what was sent. */
+// A browser that has no room left for the addresses sends nevertheless; only a reload cannot go on.
+function lenient(storage) {
+    return {
+        findAllUploads: () => storage.findAllUploads(),
+        findUploadsByFingerprint: fingerprint => storage.findUploadsByFingerprint(fingerprint),
+        removeUpload: key => storage.removeUpload(key),
+        async addUpload(fingerprint, upload) {
+            try {
+                return await storage.addUpload(fingerprint, upload);
+            } catch {
+                return undefined;
+            }
+        },
+    };
+}
+
+const options_of = (tus, file, sha256) => ({
+    endpoint: '/v1/uploads',
+    chunkSize: piece,
+    retryDelays: delays_ms,
+    metadata: { sha256, filename: file.name },
+    fingerprint: async () => `hairbake-${sha256}`,
+    urlStorage: lenient(tus.defaultOptions.urlStorage),
+    removeFingerprintOnSuccess: true,
+    onShouldRetry: may_pass,
+});
+
+/** Resolves when the service has the whole file. on_progress(bytes); aborting `signal` ends the upload there too. */
 export async function send_file(file, sha256, on_progress, signal) {
     const tus = await load_library();
+    signal.throwIfAborted();
     await new Promise((resolve, reject) => {
+        const end = () => upload.abort(true).catch(() => {}); // an upload that stays is removed when it expires
         const upload = new tus.Upload(file, {
-            endpoint: '/v1/uploads',
-            chunkSize: piece,
-            retryDelays: delays_ms,
-            metadata: { sha256, filename: file.name },
-            fingerprint: async () => `hairbake-${sha256}`,
-            removeFingerprintOnSuccess: true,
-            onShouldRetry: may_pass,
+            ...options_of(tus, file, sha256),
             onProgress: on_progress,
             onSuccess: resolve,
             onError: error =>
                 reject(Object.assign(new Error(words_of(error)), { status: error.originalResponse?.getStatus() })),
+            onUploadUrlAvailable: () => {
+                if (signal.aborted) end();
+            },
         });
         signal.addEventListener('abort', () => {
-            upload.abort();
-            reject(new Error('stopped'));
+            if (upload.url) end(); // else it is just being made and has no address yet
+            reject(signal.reason);
         });
         upload.findPreviousUploads().then(earlier => {
+            if (signal.aborted) return;
             if (earlier.length) upload.resumeFromPreviousUpload(earlier[0]);
             upload.start();
-        });
+        }, reject);
     });
+}
+
+/** Ends what an earlier send_file of the file left on the service. */
+export async function end_upload(file, sha256) {
+    const tus = await load_library();
+    const upload = new tus.Upload(file, options_of(tus, file, sha256));
+    for (const earlier of await upload.findPreviousUploads()) {
+        upload.resumeFromPreviousUpload(earlier);
+        await upload.abort(true);
+    }
 }

@@ -1,6 +1,6 @@
 // All files that are being sent, one after the other; they go on while pages change.
-import { forget_file, keep_file, kept_files } from './kept_files.js';
-import { send_file } from './tus_upload.js';
+import { forget_file, keep_file, kept_file, kept_files } from './kept_files.js';
+import { end_upload, send_file } from './tus_upload.js';
 
 /**
  * A job: { id, kind: 'model' | 'environment' | 'mesh', file, phase, done, known, sha256, entry, problem }.
@@ -13,6 +13,7 @@ export class Uploads {
     #listeners = new Set();
     #running = false;
     #stops = new Map(); // by job id: AbortController
+    #holds = new Map(); // by job id: what lets go of it, see hold
 
     constructor(api, announce) {
         this.#api = api;
@@ -29,21 +30,36 @@ export class Uploads {
         for (const file of files) {
             const job = { id: random_id(), kind, file, phase: 'waiting', done: 0 };
             this.jobs = [...this.jobs, job];
+            this.#holds.set(job.id, hold(job.id));
             keep_file({ id: job.id, kind, file });
         }
         this.#changed();
         this.#run();
     }
 
-    /** Takes up what a reload interrupted, and what failed for want of a token. */
+    /** Takes up what a reload interrupted or a closed tab left, and what failed for want of a token. */
     async go_on() {
-        for (const { id, kind, file } of await kept_files())
-            if (!this.jobs.some(job => job.id === id))
-                this.jobs = [...this.jobs, { id, kind, file, phase: 'waiting', done: 0 }];
         for (const job of this.jobs)
             if (job.phase === 'failed' && job.status === 401) this.#update(job, { phase: 'waiting' });
+        this.#run();
+        for (const { id } of await kept_files()) if (!this.#holds.has(id)) this.#take_up(id);
+    }
+
+    async #take_up(id) {
+        const held = hold(id);
+        this.#holds.set(id, held);
+        await held.granted; // now, or when the tab that sends it is gone
+        const kept = await kept_file(id);
+        if (!kept) return this.#let_go(id);
+        this.jobs = [...this.jobs, { ...kept, phase: 'waiting', done: 0 }];
         this.#changed();
         this.#run();
+    }
+
+    async #let_go(id) {
+        await forget_file(id);
+        this.#holds.get(id)?.release();
+        this.#holds.delete(id);
     }
 
     again(job) {
@@ -51,10 +67,12 @@ export class Uploads {
         this.#run();
     }
 
-    /** Takes a job off the list, also while it is being sent. */
+    /** Takes a job off the list, also while it is being sent; what the service has of an unfinished one goes. */
     remove(job) {
-        this.#stops.get(job.id)?.abort();
-        forget_file(job.id);
+        const stop = this.#stops.get(job.id);
+        stop?.abort(new Error('stopped'));
+        if (!stop && job.sha256 && job.phase !== 'stored') end_upload(job.file, job.sha256).catch(() => {});
+        this.#let_go(job.id);
         this.jobs = this.jobs.filter(({ id }) => id !== job.id);
         this.#changed();
     }
@@ -62,41 +80,59 @@ export class Uploads {
     async #run() {
         if (this.#running) return;
         this.#running = true;
-        for (let job; (job = this.jobs.find(({ phase }) => phase === 'waiting'));) await this.#send(job);
-        this.#running = false;
+        try {
+            for (let job; (job = this.jobs.find(({ phase }) => phase === 'waiting'));) await this.#send(job);
+        } finally {
+            this.#running = false;
+        }
     }
 
     async #send(job) {
         const stop = new AbortController();
+        const { signal } = stop;
         this.#stops.set(job.id, stop);
         try {
             this.#update(job, { phase: 'digesting', done: 0 });
-            const sha256 = await digest_of(job.file, done => this.#update(job, { done }), stop.signal);
-            const known = await this.#is_stored(sha256);
-            if (!known) {
-                this.#update(job, { phase: 'sending', sha256, done: 0 });
-                await send_file(job.file, sha256, done => this.#update(job, { done }), stop.signal);
-            }
+            const sha256 = await digest_of(job.file, done => this.#update(job, { done }), signal);
+            const known = await this.#give(job, sha256, signal);
+            signal.throwIfAborted();
             this.#update(job, { phase: 'reading', sha256, known });
             const entry = job.kind === 'mesh' ? null : await this.#api.post(`/v1/${job.kind}s`, { sha256 });
+            signal.throwIfAborted();
             remember_name(sha256, job.file.name);
             this.#update(job, { phase: 'stored', entry });
             this.#announce(`${job.file.name} is stored.`);
-            forget_file(job.id);
+            this.#let_go(job.id);
         } catch (error) {
-            if (stop.signal.aborted) return;
+            if (signal.aborted) return;
             this.#update(job, { phase: 'failed', problem: error.message, status: error.status });
-            if (error.status >= 400 && error.status < 500 && error.status !== 401) forget_file(job.id);
+            if (error.status >= 400 && error.status < 500 && error.status !== 401) this.#let_go(job.id);
         } finally {
             this.#stops.delete(job.id);
         }
     }
 
-    async #is_stored(sha256) {
+    /** Sends what the service does not have; true where it had it. Another tab that sends the same file is first. */
+    async #give(job, sha256, signal) {
+        const turn = hold(sha256);
+        const stopped = new Promise((_, reject) => signal.addEventListener('abort', () => reject(signal.reason)));
         try {
-            await this.#api.ask(`/v1/blobs/${sha256}`, { method: 'HEAD' });
+            await Promise.race([turn.granted, stopped]);
+            if (await this.#is_stored(sha256, signal)) return true;
+            this.#update(job, { phase: 'sending', sha256, done: 0 });
+            await send_file(job.file, sha256, done => this.#update(job, { done }), signal);
+            return false;
+        } finally {
+            turn.release();
+        }
+    }
+
+    async #is_stored(sha256, signal) {
+        try {
+            await this.#api.ask(`/v1/blobs/${sha256}`, { method: 'HEAD', signal });
             return true;
         } catch (problem) {
+            signal.throwIfAborted();
             if (problem.status === 404) return false;
             throw problem;
         }
@@ -116,6 +152,22 @@ function random_id() {
     return Array.from(crypto.getRandomValues(new Uint32Array(4)), word => word.toString(16)).join('-');
 }
 
+/**
+ * What one tab at a time may have: a kept file by its id, the sending of a file by its digest. The browser takes it
+ * back from a tab that is gone. There are such locks only where the page is at home or comes over TLS; elsewhere every
+ * tab takes up what it finds.
+ */
+function hold(id) {
+    let release;
+    const released = new Promise(resolve => (release = resolve));
+    const granted = new Promise(resolve => {
+        if (!navigator.locks) return resolve();
+        const own = () => (resolve(), released);
+        navigator.locks.request(`hairbake-upload-${id}`, own).catch(resolve); // a page without storage has none either
+    });
+    return { granted, release };
+}
+
 function digest_of(file, on_progress, signal) {
     return new Promise((resolve, reject) => {
         const worker = new Worker(new URL('./digest_worker.js', import.meta.url), { type: 'module' });
@@ -129,7 +181,7 @@ function digest_of(file, on_progress, signal) {
             else end(reject, new Error(data.error));
         };
         worker.onerror = () => end(reject, new Error('The file could not be digested.'));
-        signal.addEventListener('abort', () => end(reject, new Error('stopped')));
+        signal.addEventListener('abort', () => end(reject, signal.reason));
         worker.postMessage(file);
     });
 }
@@ -142,7 +194,11 @@ function remember_name(sha256, name) {
     const names = file_names();
     delete names[sha256];
     names[sha256] = name;
-    localStorage.setItem(names_key, JSON.stringify(Object.fromEntries(Object.entries(names).slice(-most_names))));
+    try {
+        localStorage.setItem(names_key, JSON.stringify(Object.fromEntries(Object.entries(names).slice(-most_names))));
+    } catch {
+        // No room: the file is known by its digest.
+    }
 }
 
 /** { sha256: file name } */
@@ -152,4 +208,10 @@ export function file_names() {
     } catch {
         return {};
     }
+}
+
+/** Forgets every file's name, also with the addresses of uploads (tus-js-client). */
+export function forget_names() {
+    for (const key of Object.keys(localStorage))
+        if (key === names_key || key.startsWith('tus::')) localStorage.removeItem(key);
 }
