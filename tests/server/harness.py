@@ -147,7 +147,11 @@ class Daemon:
     def connect(self, timeout=PATIENCE):
         s = socket.socket(socket.AF_INET if self.port else socket.AF_UNIX)
         s.settimeout(timeout)
-        s.connect(self.address)
+        try:
+            s.connect(self.address)
+        except OSError:
+            s.close()
+            raise
         return s
 
     def raw(self, data, then=b"", pause=0):
