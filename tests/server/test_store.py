@@ -305,6 +305,28 @@ class Blobs(unittest.TestCase):
             self.assertEqual(reply.status, 201, reply.body)
             self.assertEqual((reply.json["facts"]["strands"], reply.json["facts"]["longest_strand"]), (40, 10))
 
+    def test_a_spoiled_result_whose_input_was_deleted_says_what_to_send(self):
+        with Daemon() as d:
+            hair = d.put(hair_bytes())
+            self.assertEqual(d.ask("POST", "/v1/models", {"sha256": hair}).status, 201)
+            bake = d.ask("POST", "/v1/bakes", quick_request(hair)).json["id"]
+            file = next(f for f in d.wait(bake)["files"] if f["name"] == "transmittance.npy")
+            self.assertEqual(d.ask("DELETE", f"/v1/models/{hair}").status, 204)
+            d.stop()
+            stored = d.blob_file(file["sha256"])
+            stored.write_bytes(stored.read_bytes()[:-1] + b"!")
+            d.start()
+            self.assertIn(d.ask("GET", file["href"]).status, (409, 503))
+            view = d.wait(bake)
+            self.assertEqual((view["state"], view["error"]["kind"]), ("failed", "bad_input"), view)
+            self.assertIn("send the input again", view["error"]["message"])
+            reply = d.ask("POST", "/v1/bakes", quick_request(hair))
+            self.assertEqual((reply.status, reply.json["field"]), (422, "hair"), reply.body)
+            self.assertEqual(d.put(hair_bytes()), hair)
+            self.assertEqual(d.ask("POST", "/v1/bakes", quick_request(hair)).json["id"], bake)
+            self.assertEqual(d.wait(bake)["state"], "done")
+            self.assertEqual(sha256(d.ask("GET", file["href"]).body), file["sha256"])
+
     def test_a_file_that_cannot_be_read_for_a_moment_is_not_forgotten(self):
         for name, hide in self.obstacles().items():
             for verified in (True, False):  # since the start
