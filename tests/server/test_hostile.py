@@ -97,7 +97,8 @@ class BadWorkers(unittest.TestCase):
 
 class BadInspections(unittest.TestCase):
     def test_each_is_refused_with_the_reason_and_the_next_one_works(self):
-        models = {word: hair_bytes(seed=number) for number, word in enumerate(("dies", "dies once", "is short", "is wrong", "is good"))}
+        words = ("dies", "dies once", "is short", "is wrong", "is good")
+        models = {word: hair_bytes(seed=number) for number, word in enumerate(words)}
         says = """#!/bin/sh
 task=$(cat)
 case $task in
