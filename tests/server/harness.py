@@ -13,6 +13,7 @@ import time
 from pathlib import Path
 
 PROGRAMS = Path(os.environ.get("HAIRBAKE_PROGRAMS", Path(__file__).resolve().parents[2] / "build/bin"))
+TUS = {"Tus-Resumable": "1.0.0"}
 PATIENCE = float(os.environ.get("HAIRBAKE_PATIENCE", "120"))  # seconds; only ever reached by a failure
 
 
@@ -146,7 +147,11 @@ class Daemon:
     def connect(self, timeout=PATIENCE):
         s = socket.socket(socket.AF_INET if self.port else socket.AF_UNIX)
         s.settimeout(timeout)
-        s.connect(self.address)
+        try:
+            s.connect(self.address)
+        except OSError:
+            s.close()
+            raise
         return s
 
     def raw(self, data, then=b"", pause=0):
@@ -172,6 +177,18 @@ class Daemon:
         reply = self.ask("PUT", f"/v1/blobs/{digest}", data)
         assert reply.status in (200, 201), (reply.status, reply.body)
         return digest
+
+    def create_upload(self, data, digest=None):
+        """By tus; without a digest, the one of the data."""
+        return self.ask("POST", "/v1/uploads", headers={**TUS, "Upload-Length": str(len(data)), "Upload-Metadata":
+                                                        f"sha256 {base64_text(digest or sha256(data))},name eA=="})
+
+    def append(self, upload, offset, data):
+        return self.ask("PATCH", upload, data, {**TUS, "Upload-Offset": str(offset),
+                                                "Content-Type": "application/offset+octet-stream"})
+
+    def blob_file(self, digest):
+        return self.path / "store/blobs" / digest[:2] / digest
 
     def wait(self, bake):
         """The bake once it has ended."""

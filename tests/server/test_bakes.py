@@ -1,5 +1,6 @@
 """Bakes, batches, names and inputs through the real daemon."""
 import json
+import math
 import sqlite3
 import subprocess
 import tempfile
@@ -176,6 +177,107 @@ class Rebakes(unittest.TestCase):
             self.assertAlmostEqual(ratio[1], 1.0, delta=1e-5)
             self.assertEqual(d.ask("POST", "/v1/rebakes", {"environment": f"sha256:{new}"}).status, 422)
 
+    def test_a_name_or_a_list_of_models_says_what_is_baked_again(self):
+        with Daemon() as d:
+            models = [d.put(hair_bytes(seed=s)) for s in range(3)]
+            dusk, noon, new = (d.put(hdr_bytes(red=red)) for red in (100, 150, 200))
+            d.ask("PUT", "/v1/names/environment/stage1/dusk", {"sha256": dusk})
+            for model in models[:2]:
+                self.bake(d, {**quick_request(model), "environment": "name:stage1/dusk"})
+            self.bake(d, quick_request(models[2], noon))
+            # Two were baked under the name; their transmittance is there, the new lighting is not.
+            body = {"environment": f"sha256:{new}", "name": "stage1/dusk"}
+            self.rebake(d, body, reused=(2, 0), computed=(0, 1), members={(models[0], new), (models[1], new)})
+            # Now the new lighting is there as well: everything is done in the reply already.
+            body = {"environment": f"sha256:{new}", "models": [f"sha256:{models[2]}"]}
+            self.rebake(d, body, reused=(1, 1), computed=(0, 0), members={(models[2], new)})
+            # The name may move on and be what the bakes get.
+            d.ask("PUT", "/v1/names/environment/stage1/dusk", {"sha256": noon})
+            body = {"environment": "name:stage1/dusk", "models": [f"sha256:{m}" for m in models]}
+            batch = self.rebake(d, body, reused=(3, 1), computed=(0, 0), members={(m, noon) for m in models})
+            self.assertEqual([b["names"].get("environment") for b in batch], [{"path": "stage1/dusk", "version": 2}] * 3)
+            for wrong, field in (({"name": "stage1/dawn"}, "name"), ({"models": [f"sha256:{new}"]}, "models"),
+                                 ({"models": [f"sha256:{models[0]}"], "name": "stage1/dusk"}, None)):  # it is either
+                reply = d.ask("POST", "/v1/rebakes", {"environment": f"sha256:{new}", **wrong})
+                self.assertEqual((reply.status, reply.json.get("field")), (422, field), reply.body)
+
+    def test_a_new_lighting_may_come_with_other_settings_of_its_maps(self):
+        with Daemon() as d:
+            models = [d.put(hair_bytes(seed=s)) for s in range(2)]
+            old, new = d.put(hdr_bytes(red=100)), d.put(hdr_bytes(red=200))
+            for model in models:
+                self.bake(d, quick_request(model, old))
+            body = {"environment": f"sha256:{new}", "models": [f"sha256:{m}" for m in models], "irradiance": {"face_size": 8}}
+            batch = self.rebake(d, body, reused=(2, 0), computed=(0, 1), members={(m, new) for m in models})
+            for bake in batch:
+                settings = d.ask("GET", f"/v1/bakes/{bake['id']}").json["request"]["irradiance"]
+                self.assertEqual((settings["face_size"], settings["specular_maps"]), (8, 3))  # the new one and the old one
+                manifest = json.loads(d.file(bake["id"], "manifest.json"))
+                self.assertEqual(manifest["irradiance"]["face_size"], 8)
+                # Six faces of 8 x 8 texels of three floats, behind numpy's header of a multiple of 64 bytes.
+                self.assertIn(len(d.file(bake["id"], "diffuse.npy")) - 6 * 8 * 8 * 3 * 4, (64, 128))
+            body["irradiance"] = {"face_size": -8}
+            self.assertEqual(d.ask("POST", "/v1/rebakes", body).json["field"], "irradiance.face_size")
+
+    def test_what_is_stored_outlives_the_files_that_it_was_made_of(self):
+        with Daemon() as d:
+            hair, old, new = d.put(hair_bytes()), d.put(hdr_bytes(red=100)), d.put(hdr_bytes(red=200))
+            self.assertEqual(d.ask("POST", "/v1/models", {"sha256": hair}).status, 201)
+            self.assertEqual(d.ask("POST", "/v1/environments", {"sha256": old}).status, 201)
+            bake = self.bake(d, quick_request(hair, old))
+            for kind, digest in (("models", hair), ("environments", old)):
+                self.assertEqual(d.ask("DELETE", f"/v1/{kind}/{digest}").status, 204)
+                self.assertEqual(d.ask("HEAD", f"/v1/blobs/{digest}").status, 404)
+                again = d.ask("POST", "/v1/bakes", quick_request(hair, old))
+                self.assertEqual((again.status, again.json.get("id")), (200, bake["id"]), again.body)
+            for file in bake["files"][1:]:
+                self.assertEqual(sha256(d.ask("GET", file["href"]).body), file["sha256"])
+            # Each stage alone is stored too.
+            self.assertEqual(d.ask("POST", "/v1/bakes", quick_request(hair)).status, 200)
+            self.assertEqual(d.ask("POST", "/v1/bakes", quick_request(environment=old)).status, 200)
+            # A new lighting needs of the groom what is stored, and of the old lighting nothing.
+            body = {"environment": f"sha256:{new}", "replaces": f"sha256:{old}"}
+            batch = self.rebake(d, body, reused=(1, 0), computed=(0, 1), members={(hair, new)})
+            stages = d.ask("GET", f"/v1/bakes/{batch[0]['id']}").json["stages"]
+            self.assertEqual(stages[0], bake["stages"][0])  # its attempts too: it ran once
+            # What would have to be computed of a file that is gone is refused, and the file named.
+            for request, field in ((quick_request(hair, new, transmittance={"seed": 2, "direction_set": "random"}), "hair"),
+                                   (quick_request(hair, old, irradiance={"exponent": 9}), "environment"),
+                                   (quick_request(environment=old, irradiance={"exponent": 9}), "environment")):
+                reply = d.ask("POST", "/v1/bakes", request)
+                self.assertEqual((reply.status, reply.json["field"]), (422, field), reply.body)
+                self.assertIn("not stored", reply.json["detail"])
+            body = {"environment": f"sha256:{old}", "irradiance": {"exponent": 9}, "models": [f"sha256:{hair}"]}
+            reply = d.ask("POST", "/v1/rebakes", body)
+            self.assertEqual((reply.status, reply.json["field"]), (422, "environment"), reply.body)
+            # Sent again, it is baked.
+            d.put(hair_bytes())
+            self.bake(d, quick_request(hair, new, transmittance={"seed": 2, "direction_set": "random"}))
+
+    def bake(self, d, request):
+        reply = d.ask("POST", "/v1/bakes", request)
+        self.assertIn(reply.status, (200, 202), reply.body)
+        view = d.wait(reply.json["id"])
+        self.assertEqual(view["state"], "done", view)
+        return view
+
+    def rebake(self, d, body, reused, computed, members):
+        """The batch's bakes, once done. `reused` and `computed` count transmittance and irradiance stages; `members` are pairs of
+        model and environment."""
+        kinds = ("transmittance", "irradiance")
+        dry = d.ask("POST", "/v1/rebakes?dry_run=1", body)
+        self.assertEqual(dry.status, 200, dry.body)
+        self.assertEqual(dry.json, {"bakes": len(members), "reused_stages": dict(zip(kinds, reused)),
+                                    "computed_stages": dict(zip(kinds, computed))})
+        reply = d.ask("POST", "/v1/rebakes", body)
+        self.assertEqual((reply.status, reply.json["bakes"]), (202, len(members)), reply.body)
+        if computed == (0, 0):
+            self.assertEqual(reply.json["states"]["done"], len(members))
+        batch = d.ask("GET", reply.json["links"]["bakes"]).json["bakes"]
+        self.assertEqual({(bake["model"], bake["environment"]) for bake in batch}, members)
+        self.assertEqual([d.wait(bake["id"])["state"] for bake in batch], ["done"] * len(members))
+        return batch
+
 
 class ManyRebakes(unittest.TestCase):
     GROOMS = 1000  # how long they take is measured by tests/bench/bench_service.py
@@ -265,6 +367,67 @@ class Inputs(unittest.TestCase):
             self.assertEqual(d.ask("POST", "/v1/environments", b"#?RADIANCE\n\n-Y 99999 +X 99999\n",
                                    {"Content-Type": "application/octet-stream"}).status, 422)
             self.assertEqual(d.ask("POST", "/v1/models", b"x", {"Content-Type": "text/plain"}).status, 415)
+
+    def test_the_facts_of_a_model_are_those_of_its_bytes(self):
+        with Daemon() as d:
+            facts = d.ask("POST", "/v1/models", {"sha256": d.put(hair_bytes(strands=40, points=10))}).json["facts"]
+            # Strand s begins at (s % 7 * 0.1, 0, s // 7 * 0.1); its point p lies (0.02 p, 0.1 p, 0) from there.
+            self.assert_near(facts["bounds"]["minimum"], (0, 0, 0))
+            self.assert_near(facts["bounds"]["maximum"], (6 * 0.1 + 9 * 0.02, 9 * 0.1, 39 // 7 * 0.1))
+            self.assertEqual(facts["longest_strand"], 10)
+            self.assertAlmostEqual(facts["thickness"]["default"], 0.01, delta=1e-7)  # the header's
+            self.assertEqual((facts["transparency"], facts["colors"]), ({"default": 0.0}, [0.5, 0.5, 0.5]))
+            self.assertEqual(facts["info"], "test")
+            self.assertNotIn("warnings", facts)
+
+    def test_the_facts_of_an_environment_are_those_of_its_bytes(self):
+        with Daemon() as d:
+            width, height, row, column = 16, 8, 2, 5
+            sky = bytearray(hdr_bytes(red=128, width=width))
+            at = len(sky) - 4 * (width * height - row * width - column)
+            sky[at:at + 4] = bytes([200, 100, 50, 132])
+            facts = d.ask("POST", "/v1/environments", bytes(sky), {"Content-Type": "application/octet-stream"}).json["facts"]
+            # mantissa / 256 * 2^(exponent - 128)
+            flat, bright = (1, 0.5, 0.25), (12.5, 6.25, 3.125)
+            pixel = facts["brightest_pixel"]
+            self.assertEqual((pixel["row"], pixel["column"]), (row, column))
+            self.assert_near(pixel["radiance"], bright)
+            # Up is y: the middle of row 2 of 8 is 2.5/8 of the way from the zenith down.
+            self.assertAlmostEqual(pixel["direction"][1], math.cos(2.5 / 8 * math.pi), delta=1e-6)
+            self.assertAlmostEqual(math.hypot(*pixel["direction"]), 1, delta=1e-6)
+            # The pixel's share of the sphere: 1/16 of the zone between 2/8 and 3/8 of the way down, which is half the difference
+            # of their cosines. The energy is this mean times 4 pi.
+            share = (math.cos(2 / 8 * math.pi) - math.cos(3 / 8 * math.pi)) / 2 / width
+            self.assert_near(facts["mean_radiance"], [f + (b - f) * share for f, b in zip(flat, bright)])
+            self.assertEqual(facts["invalid_pixels"], {"negative": 0, "nan": 0, "infinite": 0})
+            self.assertFalse(facts["low_dynamic_range"])
+
+    def assert_near(self, found, expected):
+        for one, other in zip(found, expected, strict=True):
+            self.assertAlmostEqual(one, other, delta=1e-6)  # float32
+
+    def test_lists_of_inputs_and_names_go_on_page_by_page(self):
+        with Daemon(workers=2) as d:
+            added = {"models": [], "environments": [], "names/model": []}
+            for number in range(3):
+                hair, sky = d.put(hair_bytes(seed=number)), d.put(hdr_bytes(red=100 + number))
+                self.assertEqual(d.ask("POST", "/v1/models", {"sha256": hair}).status, 201)
+                self.assertEqual(d.ask("POST", "/v1/environments", {"sha256": sky}).status, 201)
+                self.assertEqual(d.ask("PUT", f"/v1/names/model/{'cab'[number]}/x", {"sha256": hair}).status, 200)
+                added["models"].insert(0, hair)  # newest first
+                added["environments"].insert(0, sky)
+            added["names/model"] = ["a/x", "b/x", "c/x"]  # by name
+            for path, expected in added.items():
+                found, pages, cursor = [], 0, ""
+                while cursor is not None:
+                    page = d.ask("GET", f"/v1/{path}?limit=1" + (f"&cursor={cursor}" if cursor else "")).json
+                    entries = page["names" if "names" in path else path]
+                    self.assertEqual(len(entries), 1)
+                    found += [entry["path" if "names" in path else "id"] for entry in entries]
+                    cursor, pages = page["next"], pages + 1
+                    self.assertLessEqual(pages, 3)
+                self.assertEqual(found, expected)
+                self.assertEqual(d.ask("GET", f"/v1/{path}?limit=0").json["field"], "limit")
 
     def test_what_a_live_bake_uses_is_not_deleted(self):
         with Daemon() as d:

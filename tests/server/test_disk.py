@@ -5,7 +5,7 @@ import subprocess
 import unittest
 from pathlib import Path
 
-from harness import PATIENCE, Daemon, base64_text, hair_bytes, hdr_bytes, quick_request, sha256
+from harness import PATIENCE, TUS, Daemon, hair_bytes, hdr_bytes, quick_request, sha256
 
 SIZE_MB = 8
 
@@ -55,8 +55,6 @@ def verified(test, d, bake):
 
 
 class Disk(unittest.TestCase):
-    TUS = {"Tus-Resumable": "1.0.0"}
-
     def assert_full(self, reply):
         self.assertEqual((reply.status, reply.headers["Content-Type"]), (507, "application/problem+json"), reply.body)
         self.assertEqual(reply.json["type"], "urn:hairbake:problem:full")
@@ -67,12 +65,11 @@ class Disk(unittest.TestCase):
             bake = d.ask("POST", "/v1/bakes", quick_request(hair, sky)).json["id"]
             self.assertEqual(d.wait(bake)["state"], "done")
             data = os.urandom(300_000)
-            upload = d.ask("POST", "/v1/uploads", headers={**self.TUS, "Upload-Length": str(len(data)),
-                                                           "Upload-Metadata": f"sha256 {base64_text(sha256(data))}"}).headers["Location"]
+            upload = d.create_upload(data).headers["Location"]
             d.fill()
             self.assert_full(d.ask("PUT", f"/v1/blobs/{sha256(data)}", data))
             self.assertEqual(d.ask("HEAD", f"/v1/blobs/{sha256(data)}").status, 404)
-            self.assert_full(self.patch(d, upload, 0, data))
+            self.assert_full(d.append(upload, 0, data))
             self.assert_full(d.ask("PUT", "/v1/names/model/x", {"sha256": hair}))
             self.assert_full(d.ask("POST", "/v1/bakes", quick_request(hair, sky, irradiance={"exponent": 9})))
             self.assertEqual(d.ask("GET", "/healthz").status, 200)
@@ -85,16 +82,12 @@ class Disk(unittest.TestCase):
 
             d.free()
             self.assertEqual(d.ask("GET", "/readyz").status, 200)
-            offset = int(d.ask("HEAD", upload, headers=self.TUS).headers["Upload-Offset"])
-            self.assertEqual(self.patch(d, upload, offset, data[offset:]).status, 204)
+            offset = int(d.ask("HEAD", upload, headers=TUS).headers["Upload-Offset"])
+            self.assertEqual(d.append(upload, offset, data[offset:]).status, 204)
             self.assertEqual(d.ask("GET", f"/v1/blobs/{sha256(data)}").body, data)
             again = d.ask("POST", "/v1/bakes", quick_request(hair, sky, irradiance={"exponent": 9}))
             self.assertEqual(d.wait(again.json["id"])["state"], "done")
             verified(self, d, again.json["id"])
-
-    def patch(self, d, path, offset, data):
-        return d.ask("PATCH", path, data, {**self.TUS, "Upload-Offset": str(offset),
-                                           "Content-Type": "application/offset+octet-stream"})
 
     def test_a_result_that_does_not_fit_fails_its_bake_and_space_lets_it_bake(self):
         with SmallDisk() as d:

@@ -2,7 +2,7 @@
 import json
 import unittest
 
-from harness import PROGRAMS, Daemon, hair_bytes, hdr_bytes, quick_request
+from harness import PROGRAMS, Daemon, hair_bytes, hdr_bytes, quick_request, sha256
 from hostile_files import exr_bytes, hostile_environments, hostile_hair
 
 GROWTH_MB = 64  # of the daemon, which reads none of these files
@@ -92,6 +92,52 @@ class BadWorkers(unittest.TestCase):
             d.wait_for_worker(running=False)
             self.assertEqual(d.leftovers(), [])
             self.assertLess(d.memory_kb("VmHWM"), 256 * 1024)  # what one worker talked was not kept
+            self.assertEqual(d.ask("GET", "/readyz").status, 200)
+
+
+class BadInspections(unittest.TestCase):
+    def test_each_is_refused_with_the_reason_and_the_next_one_works(self):
+        words = ("dies", "dies once", "is short", "is wrong", "is good")
+        models = {word: hair_bytes(seed=number) for number, word in enumerate(words)}
+        says = """#!/bin/sh
+task=$(cat)
+case $task in
+*dies*) kill -SEGV $$ ;;
+*dies-once*) if [ -e MARK ]; then printf %s "$task" | "REAL"; else touch MARK; kill -SEGV $$; fi ;;
+*is-short*) echo '{"error":{"kind":"out_of_resources","message":"memory is short","field":""}}'; exit 1 ;;
+*is-wrong*) echo '{"error":{"kind":"internal","message":"a mistake of ours","field":""}}'; exit 1 ;;
+*) printf %s "$task" | "REAL" ;;
+esac
+"""
+        with Daemon() as d:
+            d.stop()
+            program = d.path / "worker"
+            for word, data in sorted(models.items(), key=lambda item: -len(item[0])):
+                says = says.replace(f"*{word.replace(' ', '-')}*", f"*{sha256(data)}*")
+            program.write_text(says.replace("REAL", str(PROGRAMS / "hairbake-worker")).replace("MARK", str(d.path / "mark")))
+            program.chmod(0o755)
+            d.limits = f'program = "{program}"'
+            d.start()
+
+            def inspect(word):
+                return d.ask("POST", "/v1/models", {"sha256": d.put(models[word])})
+
+            dead = inspect("dies")
+            self.assertEqual((dead.status, dead.json["type"]), (422, "urn:hairbake:problem:unprocessable"), dead.body)
+            self.assertIn("Segmentation fault", dead.json["detail"])
+            once = inspect("dies once")  # it might have been the machine
+            self.assertEqual((once.status, once.json.get("facts", {}).get("strands")), (201, 40), once.body)
+            short = inspect("is short")
+            self.assertEqual((short.status, short.json["type"]), (507, "urn:hairbake:problem:full"), short.body)
+            self.assertIn("memory is short", short.json["detail"])
+            wrong = inspect("is wrong")
+            self.assertEqual((wrong.status, wrong.json["type"]), (500, "urn:hairbake:problem:internal"), wrong.body)
+            for word in ("dies", "is short", "is wrong"):
+                self.assertEqual(d.ask("GET", f"/v1/models/{sha256(models[word])}").status, 404)
+                self.assertEqual(d.ask("HEAD", f"/v1/blobs/{sha256(models[word])}").status, 200)  # it may be tried again
+            self.assertEqual(inspect("is good").status, 201)
+            self.assertEqual(d.leftovers(), [])
+            d.wait_for_worker(running=False)
             self.assertEqual(d.ask("GET", "/readyz").status, 200)
 
 

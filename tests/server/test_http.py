@@ -1,13 +1,17 @@
 """The rim: routes, framing, ranges, access, uploads."""
+import email.utils
 import json
 import re
+import shutil
 import socket
 import subprocess
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
-from harness import PROGRAMS, Daemon, base64_text, hair_bytes, quick_request, sha256
+from harness import PATIENCE, PROGRAMS, TUS, Daemon, hair_bytes, quick_request, sha256
+
 
 def status_of(answer):
     """Of a raw reply; None when the connection was closed without one."""
@@ -194,7 +198,100 @@ class Rim(unittest.TestCase):
         self.assertRegex(text, r'hairbake_bakes\{state="queued"\} 0')
 
 
+class Process(unittest.TestCase):
+    """The daemon as a program among others."""
+
+    def test_it_is_ready_while_the_worker_program_is_there(self):
+        with Daemon() as d:
+            d.stop()
+            program = d.path / "worker"
+            shutil.copy(PROGRAMS / "hairbake-worker", program)
+            d.limits = f'program = "{program}"'
+            d.start()
+            ready = d.ask("GET", "/readyz")
+            self.assertEqual((ready.status, ready.json), (200, {"status": "ready"}))
+            program.rename(d.path / "aside")
+            lacking = d.ask("GET", "/readyz")
+            self.assertEqual((lacking.status, lacking.json["type"]), (503, "urn:hairbake:problem:not-ready"))
+            self.assertIn("worker program", lacking.json["detail"])
+            self.assertIsNotNone(lacking.headers["Retry-After"])
+            self.assertEqual(d.ask("GET", "/healthz").status, 200)  # alive all the same
+            (d.path / "aside").rename(program)
+            self.assertEqual(d.ask("GET", "/readyz").status, 200)
+
+    def test_every_line_of_the_log_is_json(self):
+        with Daemon(max_crashes=0) as d:
+            hair = d.put(hair_bytes())
+            d.wait(d.ask("POST", "/v1/bakes", quick_request(hair)).json["id"])
+            broken = d.put(hair_bytes()[:200])
+            d.wait(d.ask("POST", "/v1/bakes", quick_request(broken)).json["id"])
+            d.stop()
+            d.blob_file(hair).write_bytes(hair_bytes(seed=1))  # as long as it was
+            d.blob_file(broken).unlink()
+            d.start()
+            self.assertEqual(d.ask("GET", f"/v1/blobs/{hair}").status, 503)
+            d.stop()
+            lines = [json.loads(line) for line in (d.path / "log").read_text().splitlines()]
+            self.assertLessEqual({"info", "warning", "error"}, {line["level"] for line in lines})  # a bake, a loss, rotten bytes
+            for line in lines:
+                self.assertEqual(set(line), {"time", "level", "thread", "message"})
+                self.assertRegex(line["time"], r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}[+-]\d\d:\d\d$")
+
+    def test_one_port_has_one_daemon(self):
+        with Daemon() as d, Daemon() as other:
+            other.stop()
+            other.listen = f"port = {d.port}"
+            second = other.spawn()
+            self.assertEqual(second.wait(PATIENCE), 2)
+            second.stdout.close()
+            self.assertIn(f"cannot listen on 127.0.0.1 port {d.port}", (other.path / "log").read_text())
+            self.assertEqual(d.ask("GET", "/healthz").status, 200)
+
+    def test_it_links_none_of_the_libraries_that_bake(self):
+        def needed(program):
+            return subprocess.run(["ldd", PROGRAMS / program], check=True, capture_output=True, text=True).stdout.lower()
+
+        for library in ("openvdb", "embree", "openimageio", "tbb"):
+            self.assertNotIn(library, needed("hairbaked"))
+            self.assertIn(library, needed("hairbake-worker"))  # or the words would be wrong ones
+
+
 class Tokens(unittest.TestCase):
+    def test_a_new_token_is_taken_with_the_lines_that_are_printed(self):
+        printed = subprocess.run([PROGRAMS / "hairbaked", "token", "new"], check=True, capture_output=True, text=True).stdout
+        first, lines = printed.split("\n\n", 1)
+        token = first.split(": ")[1]
+        # 32 random bytes are 42 letters of 6 bits and one of the last 4.
+        self.assertRegex(token, r"^[A-Za-z0-9_-]{43}$")
+        self.assertIn(f'sha256 = "{sha256(token.encode())}"', lines)
+        again = subprocess.run([PROGRAMS / "hairbaked", "token", "new"], check=True, capture_output=True, text=True).stdout
+        self.assertNotIn(token, again)
+        with Daemon(tokens=lines.replace('name = ""', 'name = "farm"')) as d:
+            blob = f"/v1/blobs/{sha256(b'x')}"
+            self.assertEqual(d.ask("PUT", blob, b"x", {"Authorization": f"Bearer {token}"}).status, 201)
+            self.assertEqual(d.ask("GET", blob, headers={"Authorization": f"Bearer {token}"}).status, 200)
+            for wrong in (sha256(token.encode()), token[:-1], token.swapcase()):
+                self.assertEqual(d.ask("GET", blob, headers={"Authorization": f"Bearer {wrong}"}).status, 401, wrong)
+
+    def test_the_oldest_of_too_many_sessions_of_a_token_goes_and_other_tokens_keep_theirs(self):
+        tokens = "".join(f'[[token]]\nname = "{name}"\nsha256 = "{sha256(name.encode())}"\nscopes = ["read"]\n'
+                         for name in ("many", "one"))
+        with Daemon(tokens=tokens) as d:
+            def open_session(token):
+                reply = d.ask("POST", "/v1/session", headers={"Authorization": f"Bearer {token}"})
+                self.assertEqual(reply.status, 204, reply.body)
+                return reply.headers["Set-Cookie"].split(";")[0]
+
+            def status(cookie):
+                return d.ask("GET", "/v1/bakes", headers={"Cookie": cookie}).status
+
+            other = open_session("one")
+            sessions = [open_session("many") for _ in range(1000)]  # what a token may have
+            self.assertEqual(status(sessions[0]), 200)
+            sessions.append(open_session("many"))
+            self.assertEqual([status(cookie) for cookie in (sessions[0], sessions[1], sessions[-1], other)], [401, 200, 200, 200])
+            self.assertEqual(status(open_session("one")), 200)
+
     def test_scopes_expiry_and_sessions(self):
         def token(name, text, scopes, more=""):
             return f'[[token]]\nname = "{name}"\nsha256 = "{sha256(text.encode())}"\nscopes = {json.dumps(scopes)}\n{more}\n'
@@ -229,23 +326,13 @@ class Tokens(unittest.TestCase):
 
 
 class Uploads(unittest.TestCase):
-    TUS = {"Tus-Resumable": "1.0.0"}
-
-    def patch(self, d, path, offset, data):
-        return d.ask("PATCH", path, data, {**self.TUS, "Upload-Offset": str(offset),
-                                           "Content-Type": "application/offset+octet-stream"})
-
-    def create(self, d, data, digest=None):
-        return d.ask("POST", "/v1/uploads", headers={**self.TUS, "Upload-Length": str(len(data)),
-                                                     "Upload-Metadata": f"sha256 {base64_text(digest or sha256(data))},name eA=="})
-
     def test_an_upload_goes_on_after_a_lost_connection_and_a_killed_daemon(self):
         data = hair_bytes(strands=500)
         with Daemon() as d:
-            reply = self.create(d, data)
+            reply = d.create_upload(data)
             self.assertEqual(reply.status, 201, reply.body)
             path = reply.headers["Location"]
-            self.assertEqual(self.patch(d, path, 0, data[:1000]).headers["Upload-Offset"], "1000")
+            self.assertEqual(d.append(path, 0, data[:1000]).headers["Upload-Offset"], "1000")
             # A connection that breaks in the middle of a PATCH: what came stays.
             with socket.create_connection(("127.0.0.1", d.port)) as s:
                 s.sendall((f"PATCH {path} HTTP/1.1\r\nHost: localhost\r\nTus-Resumable: 1.0.0\r\nUpload-Offset: 1000\r\n"
@@ -255,26 +342,64 @@ class Uploads(unittest.TestCase):
                 s.recv(1000)
             d.kill()
             d.start()
-            head = d.ask("HEAD", path, headers=self.TUS)
+            head = d.ask("HEAD", path, headers=TUS)
             self.assertEqual((head.headers["Upload-Offset"], head.headers["Upload-Length"]), ("3000", str(len(data))))
-            self.assertEqual(self.patch(d, path, 1000, data[1000:]).status, 409)
-            self.assertEqual(self.patch(d, path, 3000, data[3000:]).status, 204)
+            self.assertEqual(d.append(path, 1000, data[1000:]).status, 409)
+            self.assertEqual(d.append(path, 3000, data[3000:]).status, 204)
             self.assertEqual(d.ask("GET", f"/v1/blobs/{sha256(data)}").body, data)
-            self.assertEqual(d.ask("HEAD", path, headers=self.TUS).status, 404)
+            self.assertEqual(d.ask("HEAD", path, headers=TUS).status, 404)
 
     def test_refuses_wrong_uploads(self):
         with Daemon(config="blob_mb = 1\nupload_lifetime_s = 1") as d:
             self.assertEqual(d.ask("POST", "/v1/uploads", headers={"Upload-Length": "1"}).status, 412)
-            self.assertEqual(d.ask("POST", "/v1/uploads", headers={**self.TUS, "Upload-Length": "1"}).status, 400)
-            self.assertEqual(d.ask("POST", "/v1/uploads", headers={**self.TUS, "Upload-Length": "2000000"}).status, 413)
+            self.assertEqual(d.ask("POST", "/v1/uploads", headers={**TUS, "Upload-Length": "1"}).status, 400)
+            self.assertEqual(d.ask("POST", "/v1/uploads", headers={**TUS, "Upload-Length": "2000000"}).status, 413)
             self.assertEqual(d.ask("OPTIONS", "/v1/uploads").headers["Tus-Extension"], "creation,termination,expiration")
-            path = self.create(d, b"right", sha256(b"other")).headers["Location"]
-            self.assertEqual(self.patch(d, path, 0, b"right!").status, 413)  # beyond its length
-            self.assertEqual(self.patch(d, path, 0, b"right").status, 422)  # of another digest: gone
-            self.assertEqual(d.ask("HEAD", path, headers=self.TUS).status, 404)
-            path = self.create(d, b"given up").headers["Location"]
-            self.assertEqual(d.ask("DELETE", path, headers=self.TUS).status, 204)
+            path = d.create_upload(b"right", sha256(b"other")).headers["Location"]
+            self.assertEqual(d.append(path, 0, b"right!").status, 413)  # beyond its length
+            self.assertEqual(d.append(path, 0, b"right").status, 422)  # of another digest: gone
+            self.assertEqual(d.ask("HEAD", path, headers=TUS).status, 404)
+            path = d.create_upload(b"given up").headers["Location"]
+            self.assertEqual(d.ask("DELETE", path, headers=TUS).status, 204)
             self.assertEqual(list((d.path / "store/uploads").iterdir()), [])
+
+    def test_a_patch_without_the_media_type_is_refused_and_nothing_of_it_is_kept(self):
+        with Daemon() as d:
+            path = d.create_upload(b"hello").headers["Location"]
+            reply = d.ask("PATCH", path, b"hello", {**TUS, "Upload-Offset": "0"})
+            self.assertEqual(reply.status, 415, reply.body)
+            self.assertEqual(reply.json["field"], "Content-Type")
+            self.assertEqual(d.ask("HEAD", path, headers=TUS).headers["Upload-Offset"], "0")
+            self.assertEqual(d.append(path, 0, b"hello").status, 204)
+
+    def test_an_upload_that_does_not_grow_expires_when_it_says(self):
+        lifetime = 1
+        with Daemon(config=f"upload_lifetime_s = {lifetime}") as d:
+            before = time.time()
+            reply = d.create_upload(b"hello")
+            path, after = reply.headers["Location"], time.time()
+            expires = self.date(reply)
+            # The date has whole seconds: it lies up to one before.
+            self.assertTrue(before + lifetime - 1 < expires <= after + lifetime, (before, expires, after))
+            before = time.time()
+            expires = self.date(d.append(path, 0, b"he"))  # it grows: counted from now
+            self.assertTrue(before + lifetime - 1 < expires <= time.time() + lifetime)
+            self.assertEqual(len(list((d.path / "store/uploads").iterdir())), 1)
+            d.stop()
+            time.sleep(lifetime + 0.1)
+            d.start()
+            self.assertIn(d.ask("HEAD", path, headers=TUS).status, (404, 410))
+            self.assertIn(d.append(path, 2, b"llo").status, (404, 410))
+            self.assertEqual(list((d.path / "store/uploads").iterdir()), [])
+            self.assertEqual(d.create_upload(b"hello").status, 201)  # it may be begun again
+
+    @staticmethod
+    def date(reply):
+        """Upload-Expires in seconds since 1970; an HTTP date is of one form."""
+        text = reply.headers["Upload-Expires"]
+        expires = email.utils.parsedate_to_datetime(text)
+        assert email.utils.format_datetime(expires, usegmt=True) == text, text
+        return expires.timestamp()
 
 
 if __name__ == "__main__":

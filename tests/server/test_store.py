@@ -11,7 +11,7 @@ import threading
 import time
 import unittest
 
-from harness import PATIENCE, Daemon, hair_bytes, hdr_bytes, quick_request, sha256, slow_request
+from harness import PATIENCE, TUS, Daemon, hair_bytes, hdr_bytes, quick_request, sha256, slow_request
 
 ROUNDS = int(os.environ.get("HAIRBAKE_KILL_ROUNDS", "10"))
 
@@ -20,7 +20,7 @@ class Kills(unittest.TestCase):
     def test_nothing_that_was_answered_is_lost(self):
         """kill -9 of daemon, worker or both at random moments under a stream of uploads and submissions."""
         rng = random.Random(4)
-        accepted_bakes, accepted_blobs = set(), {}
+        accepted_bakes, accepted_blobs, uploads = set(), {}, {}
         with Daemon(workers=2) as d:
             stop = threading.Event()
 
@@ -40,7 +40,26 @@ class Kills(unittest.TestCase):
                     except (OSError, ValueError, http.client.HTTPException):
                         time.sleep(0.02)  # the daemon is being killed or started
 
-            threads = [threading.Thread(target=client, args=(n,)) for n in range(2)]
+            def uploader():
+                step, upload = 0, None
+                while not stop.is_set():
+                    try:
+                        if not upload:
+                            step += 1
+                            data = hair_bytes(seed=50_000 + step)
+                            reply = d.create_upload(data)
+                            if reply.status == 201:
+                                upload = reply.headers["Location"]
+                                uploads[upload] = {"data": data, "answered": 0}
+                        elif self.go_on(d, upload, uploads[upload], piece=700):
+                            accepted_blobs[sha256(data)] = data
+                            del uploads[upload]
+                            upload = None
+                        time.sleep(0.02)
+                    except (OSError, ValueError, http.client.HTTPException):
+                        time.sleep(0.02)
+
+            threads = [threading.Thread(target=client, args=(n,)) for n in range(2)] + [threading.Thread(target=uploader)]
             for thread in threads:
                 thread.start()
             for _ in range(ROUNDS):
@@ -58,6 +77,13 @@ class Kills(unittest.TestCase):
             for thread in threads:
                 thread.join()
             self.assertGreater(len(accepted_bakes), ROUNDS // 2)
+            # What an upload was answered to have is there, and the rest may follow.
+            for upload, state in uploads.items():
+                while not self.go_on(d, upload, state, piece=len(state["data"])):
+                    pass
+                accepted_blobs[sha256(state["data"])] = state["data"]
+            unfinished = d.create_upload(b"hello").headers["Location"]
+            self.assertEqual(d.append(unfinished, 0, b"he").status, 204)
             for bake in accepted_bakes:
                 view = d.wait(bake)
                 self.assertEqual(view["state"], "done", view)
@@ -73,8 +99,29 @@ class Kills(unittest.TestCase):
             with sqlite3.connect(d.path / "store/hairbake.db") as database:
                 self.assertEqual(database.execute("PRAGMA integrity_check").fetchall(), [("ok",)])
                 rows = {r[0] for r in database.execute("SELECT sha256 FROM blobs")}
+                open_uploads = {r[0] for r in database.execute("SELECT id FROM uploads")}
+            self.assertIn(unfinished.rsplit("/", 1)[1], open_uploads)
+            self.assertEqual({f.name for f in (d.path / "store/uploads").iterdir()}, open_uploads)
             files = {f.name for f in (d.path / "store/blobs").rglob("*") if f.is_file()}
             self.assertEqual(rows, files)
+
+    def go_on(self, d, upload, state, piece):
+        """Sends the next piece; True when the upload has become a blob. `state` keeps the offset that was answered last."""
+        data = state["data"]
+        head = d.ask("HEAD", upload, headers=TUS)
+        if head.status == 404:  # the last reply was lost
+            self.assertEqual(d.ask("GET", f"/v1/blobs/{sha256(data)}").body, data, f"{state['answered']} bytes were answered")
+            return True
+        if head.status != 200:
+            return False
+        offset = int(head.headers["Upload-Offset"])
+        self.assertGreaterEqual(offset, state["answered"])
+        reply = d.append(upload, offset, data[offset:offset + piece])
+        if reply.status != 204:
+            return False
+        state["answered"] = int(reply.headers["Upload-Offset"])
+        self.assertEqual(state["answered"], min(offset + piece, len(data)))
+        return state["answered"] == len(data)
 
 
 class Workers(unittest.TestCase):
@@ -192,7 +239,163 @@ class Restarts(unittest.TestCase):
             d.process.stdout.close()
 
 
+    def test_a_broken_page_of_the_database_stops_the_start_and_says_what_to_do(self):
+        with Daemon() as d:
+            blob = d.put(b"what is kept")
+            d.stop()
+            database, page = d.path / "store/hairbake.db", 4096
+            whole = database.read_bytes()
+            self.assertGreater(len(whole) // page, 20)  # every table and every index has one at least
+            for number in (1, len(whole) // page // 2, len(whole) // page - 1):
+                begin = number * page
+                broken = bytes(byte ^ 0xff for byte in whole[begin:begin + page])
+                database.write_bytes(whole[:begin] + broken + whole[begin + page:])
+                (d.path / "log").write_text("")
+                process = d.spawn()
+                self.assertEqual(process.wait(PATIENCE), 3, number)
+                process.stdout.close()
+                self.assertIn("restore a copy", (d.path / "log").read_text())
+            database.write_bytes(whole)  # the copy
+            d.start()
+            self.assertEqual(d.ask("GET", f"/v1/blobs/{blob}").body, b"what is kept")
+
+
+class Blobs(unittest.TestCase):
+    """Files of the store that changed behind the daemon's back."""
+
+    def test_bytes_that_rotted_are_replaced_when_they_are_sent_again(self):
+        data = hair_bytes()
+
+        def put(d):
+            self.assertIn(d.ask("PUT", f"/v1/blobs/{sha256(data)}", data).status, (200, 201))
+
+        def tus(d):
+            self.assertEqual(d.append(d.create_upload(data).headers["Location"], 0, data).status, 204)
+
+        def post(d):
+            headers = {"Content-Type": "application/octet-stream"}
+            self.assertIn(d.ask("POST", "/v1/models", data, headers).status, (200, 201))
+
+        for send in (put, tus, post):
+            with Daemon() as d:
+                digest = d.put(data)
+                d.stop()
+                d.blob_file(digest).write_bytes(data[:200] + bytes([data[200] ^ 1]) + data[201:])
+                d.start()
+                send(d)
+                reply = d.ask("GET", f"/v1/blobs/{digest}")
+                self.assertEqual((reply.status, reply.body == data), (200, True), send.__name__)
+                self.assertEqual(d.leftovers(), [])
+
+    def test_a_model_whose_file_is_another_one_has_no_facts_until_it_is_sent_again(self):
+        with Daemon() as d:
+            right, wrong = hair_bytes(strands=40, points=10), hair_bytes(strands=20, points=20)
+            self.assertEqual(len(right), len(wrong))
+            digest = d.put(right)
+            d.stop()
+            d.blob_file(digest).write_bytes(wrong)
+            d.start()
+            reply = d.ask("POST", "/v1/models", {"sha256": digest})
+            self.assertEqual((reply.status, reply.headers["Content-Type"]), (503, "application/problem+json"), reply.body)
+            self.assertEqual(d.ask("GET", f"/v1/models/{digest}").status, 404)
+            self.assertEqual(d.ask("HEAD", f"/v1/blobs/{digest}").status, 404)
+            self.assertEqual(d.ask("POST", "/v1/models", {"sha256": digest}).status, 422)  # to be sent first
+            self.assertEqual(d.put(right), digest)
+            reply = d.ask("POST", "/v1/models", {"sha256": digest})
+            self.assertEqual(reply.status, 201, reply.body)
+            self.assertEqual((reply.json["facts"]["strands"], reply.json["facts"]["longest_strand"]), (40, 10))
+
+    def test_a_spoiled_result_whose_input_was_deleted_says_what_to_send(self):
+        with Daemon() as d:
+            hair = d.put(hair_bytes())
+            self.assertEqual(d.ask("POST", "/v1/models", {"sha256": hair}).status, 201)
+            bake = d.ask("POST", "/v1/bakes", quick_request(hair)).json["id"]
+            file = next(f for f in d.wait(bake)["files"] if f["name"] == "transmittance.npy")
+            self.assertEqual(d.ask("DELETE", f"/v1/models/{hair}").status, 204)
+            d.stop()
+            stored = d.blob_file(file["sha256"])
+            stored.write_bytes(stored.read_bytes()[:-1] + b"!")
+            d.start()
+            self.assertIn(d.ask("GET", file["href"]).status, (409, 503))
+            view = d.wait(bake)
+            self.assertEqual((view["state"], view["error"]["kind"]), ("failed", "bad_input"), view)
+            self.assertIn("send the input again", view["error"]["message"])
+            reply = d.ask("POST", "/v1/bakes", quick_request(hair))
+            self.assertEqual((reply.status, reply.json["field"]), (422, "hair"), reply.body)
+            self.assertEqual(d.put(hair_bytes()), hair)
+            self.assertEqual(d.ask("POST", "/v1/bakes", quick_request(hair)).json["id"], bake)
+            self.assertEqual(d.wait(bake)["state"], "done")
+            self.assertEqual(sha256(d.ask("GET", file["href"]).body), file["sha256"])
+
+    def test_a_file_that_cannot_be_read_for_a_moment_is_not_forgotten(self):
+        for name, hide in self.obstacles().items():
+            for verified in (True, False):  # since the start
+                with self.subTest(obstacle=name, verified=verified), Daemon() as d:
+                    self.become_bound_to_modes(d)
+                    hair = d.put(hair_bytes())
+                    bake = d.ask("POST", "/v1/bakes", quick_request(hair)).json["id"]
+                    view = d.wait(bake)
+                    self.assertEqual(view["state"], "done")
+                    result = next(f for f in view["files"] if f["name"] == "transmittance.npy")
+                    addresses = {hair: f"/v1/blobs/{hair}", result["sha256"]: result["href"]}
+                    d.stop()
+                    d.start()
+                    for digest, address in addresses.items():
+                        if verified:
+                            self.assertEqual(d.ask("GET", address).status, 200)
+                        show = hide(d.blob_file(digest))
+                        reply = d.ask("GET", address)
+                        self.assertEqual((reply.status, reply.headers["Content-Type"]), (503, "application/problem+json"))
+                        self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}").json["state"], "done")
+                        show()
+                        reply = d.ask("GET", address)
+                        self.assertEqual((reply.status, sha256(reply.body)), (200, digest))
+                    self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}").json["stages"], view["stages"])  # nothing ran again
+
+    @staticmethod
+    def become_bound_to_modes(d):
+        """root ignores a file's mode by two capabilities."""
+        if os.geteuid() == 0:
+            d.stop()
+            d.before = ["setpriv", "--bounding-set=-dac_override,-dac_read_search"]
+            d.start()
+
+    @staticmethod
+    def obstacles():
+        """By name, what makes a file unreadable and returns what makes it readable again."""
+        def mode(file):
+            before = file.stat().st_mode
+            file.chmod(0)
+            return lambda: file.chmod(before)
+
+        def aside(put_there, take_away):
+            def hide(file):
+                kept = file.parent.parent.parent / "aside"
+                file.rename(kept)
+                put_there(file)
+                return lambda: (take_away(file), kept.rename(file))
+            return hide
+
+        return {"mode": mode, "a folder": aside(lambda file: file.mkdir(), lambda file: file.rmdir()),
+                "a link to itself": aside(lambda file: file.symlink_to(file), lambda file: file.unlink())}
+
+
 class Budget(unittest.TestCase):
+    def test_what_is_stored_may_be_sent_to_a_full_store(self):
+        with Daemon(config="budget_mb = 1\nblob_mb = 1") as d:
+            # 1,048,576 bytes are allowed. These are 1,000,000 and stay, as names point at them.
+            kept = [os.urandom(600_000), os.urandom(400_000)]
+            for number, data in enumerate(kept):
+                d.ask("PUT", f"/v1/names/mesh/{number}", {"sha256": d.put(data)})
+            loose = d.put(b"nothing needs this")
+            for data in kept:
+                self.assertEqual(d.ask("PUT", f"/v1/blobs/{sha256(data)}", data).status, 200)
+                self.assertEqual(d.ask("HEAD", f"/v1/blobs/{loose}").status, 200)  # it need not have gone
+            other = os.urandom(600_000)
+            self.assertEqual(d.ask("PUT", f"/v1/blobs/{sha256(other)}", other).status, 507)
+            for data in kept:
+                self.assertEqual(d.ask("GET", f"/v1/blobs/{sha256(data)}").body, data)
+
     def test_the_oldest_results_go_first_and_what_is_needed_stays(self):
         with Daemon(config="budget_mb = 1\nblob_mb = 1") as d:
             hair = d.put(hair_bytes())
