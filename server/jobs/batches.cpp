@@ -57,6 +57,7 @@ std::string text(const Json& body, const char* field) {
 /// request tells doubles apart anyway.
 std::vector<SqlRow> affected(Sql& sql, const Json& body) {
     const std::string select = "SELECT request, names FROM bakes WHERE hair IS NOT NULL AND ";
+    const std::string wanted = select + "state NOT IN ('failed', 'cancelled') AND ";
     std::vector<SqlRow> rows;
     if (body.contains("bakes")) {
         for (const std::string& id : strings(body, "bakes")) {
@@ -67,16 +68,16 @@ std::vector<SqlRow> affected(Sql& sql, const Json& body) {
     } else if (body.contains("models")) {
         for (const std::string& model : strings(body, "models")) {
             const std::string digest = named_digest(sql, model, "model", "models");
-            const auto found = sql.rows(select + "hair = ? ORDER BY seq DESC LIMIT 1", {digest});
+            const auto found = sql.rows(wanted + "hair = ? ORDER BY seq DESC LIMIT 1", {digest});
             if (found.empty()) refuse("models", "the model " + model.substr(0, 80) + " was never baked");
             rows.push_back(found[0]);
         }
     } else if (body.contains("replaces")) {
         const std::string digest = named_digest(sql, text(body, "replaces"), "environment", "replaces");
-        rows = sql.rows(select + "environment = ? ORDER BY seq", {digest});
+        rows = sql.rows(wanted + "environment = ? ORDER BY seq", {digest});
     } else {
         rows = sql.rows(
-            select + "id IN (SELECT bake FROM bake_names WHERE field = 'environment' AND path = ?) ORDER BY seq",
+            wanted + "id IN (SELECT bake FROM bake_names WHERE field = 'environment' AND path = ?) ORDER BY seq",
             {text(body, "name")});
     }
     if (rows.empty()) refuse(body.contains("name") ? "name" : "replaces", "no bake of a hair model was made under it");

@@ -56,6 +56,21 @@ void Uploads::recover() {
             if (!fs::exists(folder_ / row.text(0))) sql.run("DELETE FROM uploads WHERE id = ?", {row.text(0)});
     });
     expire();
+    complete_whole_ones();
+}
+
+/// What was received to its last byte, and a crash kept from becoming a blob: its sender may not ask again.
+void Uploads::complete_whole_ones() {
+    std::vector<std::string> whole;
+    database_.read([&](Sql& sql) {
+        for (const SqlRow& row : sql.rows("SELECT id, bytes FROM uploads"))
+            if (size_on_disk(row.text(0)) == static_cast<std::uint64_t>(row.integer(1))) whole.push_back(row.text(0));
+    });
+    for (const std::string& id : whole) try {
+            complete(id);
+        } catch (const Refusal&) {
+            // its bytes are not those that were announced: it is gone
+        }
 }
 
 void Uploads::expire() {
@@ -147,9 +162,14 @@ Uploads::Appended Uploads::complete(const std::string& id) {
     const std::uint64_t size = size_on_disk(id);
     const std::string found = digest_of_file(folder_ / id);
     const bool whole = found == expected;
-    if (whole) store_.adopt(folder_ / id, expected);
+    if (whole) {  // by a second name: a crash before the row is written leaves the upload as it was
+        const fs::path second = store_.incoming_folder() / random_name();
+        if (::link((folder_ / id).c_str(), second.c_str()) != 0) throw_store_error(second, errno);
+        store_.adopt(second, expected);
+        ::unlink(second.c_str());  // there is none when the store took it
+    }
     database_.write([&](Sql& sql) { sql.run("DELETE FROM uploads WHERE id = ?", {id}); });
-    ::unlink((folder_ / id).c_str());  // there is none when the store took it
+    ::unlink((folder_ / id).c_str());
     if (!whole)
         throw Refusal(Refused::unprocessable,
                       "the digest of the uploaded bytes is " + found + "; allowed is " + expected, "sha256");

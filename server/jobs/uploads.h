@@ -59,6 +59,7 @@ private:
     std::uint64_t size_on_disk(const std::string& id) const;
     void check_count(const std::string& token);
     Appended complete(const std::string& id);
+    void complete_whole_ones();
 
     Database& database_;
     BlobStore& store_;
