@@ -83,6 +83,7 @@ before(async () => {
         const { load_bake } = await import('/viewer/bake_files.js');
         const { HairView } = await import('/viewer/hair_view.js');
         const api = {
+            ask: (path, options) => fetch(path, options),
             json: async path => (await fetch(path)).json(),
             file_url: (id, name) => `/v1/bakes/${id}/files/${name}`,
         };
