@@ -87,7 +87,7 @@ int take_priority(Json& body) {
 
 /// What is computed needs its files; what is stored does not.
 void check_inputs_stored(Sql& sql, const BakeRequest& request, const StagePlan& stage) {
-    if (!sql.rows("SELECT 1 FROM stages WHERE key = ? AND state = 'done'", {stage.key}).empty()) return;
+    if (is_stored(sql, stage)) return;
     for (const FileField& file : file_fields) {
         const std::optional<std::string>& value = request.*file.value;
         if (!value) continue;
@@ -128,6 +128,10 @@ BakePlan plan_bake(Sql& sql, const AskedBake& asked) {
     plan.priority = asked.priority;
     for (const StagePlan* stage : plan.stages()) check_inputs_stored(sql, asked.request, *stage);
     return plan;
+}
+
+bool is_stored(Sql& sql, const StagePlan& stage) {
+    return !sql.rows("SELECT 1 FROM stages WHERE key = ? AND state = 'done'", {stage.key}).empty();
 }
 
 std::string named_digest(Sql& sql, const std::string& value, const std::string& kind, const std::string& field) {

@@ -21,6 +21,9 @@ AskedBake read_bake_request(Sql& sql, const std::string& text);
 /// Throws Refusal naming the field whose file a stage needs that is not stored, when the file is not stored either.
 BakePlan plan_bake(Sql& sql, const AskedBake& asked);
 
+/// Whether the stage's result is stored, so that nothing is computed for it.
+bool is_stored(Sql& sql, const StagePlan& stage);
+
 /// The digest that "sha256:..." or "name:..." stands for; `kind` is that of names. Throws Refusal naming `field`.
 std::string named_digest(Sql& sql, const std::string& value, const std::string& kind, const std::string& field);
 

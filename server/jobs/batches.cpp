@@ -101,10 +101,6 @@ BakePlan plan_again(Sql& sql, const SqlRow& old, const Json& body) {
     return plan;
 }
 
-bool stored(Sql& sql, const std::string& stage) {
-    return !sql.rows("SELECT 1 FROM stages WHERE key = ? AND state = 'done'", {stage}).empty();
-}
-
 /// Which stages are there and which must run.
 Json forecast(Sql& sql, const std::vector<BakePlan>& plans) {
     std::set<std::string> seen;
@@ -112,7 +108,7 @@ Json forecast(Sql& sql, const std::vector<BakePlan>& plans) {
     for (const BakePlan& plan : plans)
         for (const StagePlan* stage : plan.stages())
             if (seen.insert(stage->key).second) {
-                Json& count = stored(sql, stage->key) ? reused[stage->kind] : computed[stage->kind];
+                Json& count = is_stored(sql, *stage) ? reused[stage->kind] : computed[stage->kind];
                 count = count.get<int>() + 1;
             }
     return {{"bakes", plans.size()}, {"reused_stages", reused}, {"computed_stages", computed}};

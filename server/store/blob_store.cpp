@@ -89,8 +89,8 @@ bool BlobStore::put(IncomingFile& file, const std::string& expected) {
 bool BlobStore::adopt(const fs::path& file, const std::string& digest) {
     const auto held = database_.lock();
     const bool known = size_of(digest).has_value();
-    if (!known ||
-        !is_verified(digest)) {  // bytes that nobody has looked at since the start may be spoiled: these are not
+    // Stored bytes that nobody has looked at since the start may be spoiled; these are not.
+    if (!known || !is_verified(digest)) {
         const auto bytes = static_cast<std::int64_t>(fs::file_size(file));
         if (::rename(file.c_str(), path_of(digest).c_str()) != 0) throw_store_error(file, errno);
         sync_folder(path_of(digest).parent_path());

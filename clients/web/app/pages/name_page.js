@@ -25,8 +25,6 @@ const fields = { model: ['hair'], environment: ['environment'], mesh: ['occluder
 /** Those of them by which the bake asked for the name. */
 const asked_by = (bake, { kind, path }) => fields[kind].filter(field => bake.names[field]?.path === path);
 
-const no_inputs = { items: [], names: {}, files: {} };
-
 function NewVersion({ kind, name, inputs, on_change }) {
     const { api, announce } = use_app();
     const [problem, set_problem] = useState(null);
@@ -129,7 +127,7 @@ export default function NamePage({ path }) {
     const [, kind, ...rest] = path;
     const name = rest.join('/');
     if (name && kind === 'mesh')
-        return html`<${OneName} kind="mesh" path=${name} inputs=${{ ...no_inputs, files: file_names() }} />`;
+        return html`<${OneName} kind="mesh" path=${name} inputs=${{ files: file_names() }} />`;
     if (name && Object.hasOwn(fields, kind)) return html`<${NameOfInput} kind=${kind} path=${name} />`;
     return html`<p>Names are listed with the <a href="#/environments">environments</a>, <a
         href="#/models">models</a> and <a href="#/meshes">meshes</a> that they point at.</p>`;
