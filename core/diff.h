@@ -11,7 +11,7 @@ namespace hairbake {
 
 /// Statistics of second - first for two linear pictures (OpenEXR, HDR, PFM) of one size, at most 16384 x 16384, as a
 /// JSON object: width, height, and over all pixels and channels rmse, max_abs, bias, mean (of the first),
-/// rmse_over_mean; "lit" has pixels, rmse, mean and rmse_over_mean over the pixels where either is not black. A NaN on
+/// rmse_over_mean; "lit" has pixels, rmse, bias, mean and rmse_over_mean over the pixels where either is not black. A NaN on
 /// either side makes every figure NaN (null). With `picture` (a .png), writes the difference in false colours: each
 /// pixel's largest |second - first| over the channels, from black (0) over blue, red and yellow to white (`scale` and
 /// more; without one the largest difference, rounded up to 1, 2 or 5 times a power of ten), NaN in green, with a

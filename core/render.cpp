@@ -120,6 +120,7 @@ void with_lighting(const RenderRequest& request, const RenderInput& input, const
     if (request.transmittance) average.average = input.average;
     switch (request.mode) {
         case ShadingMode::baked:
+            if (!shows_light(request)) return body(*average_lighting(average));
             return body(*baked_lighting(average, *input.maps));
         case ShadingMode::brute:
             return body(*brute_lighting(average, *lights));

@@ -36,7 +36,8 @@ struct RenderLook {
 
 struct RenderRequest {
     std::optional<std::string> result;  ///< result folder; without it the bake runs in memory
-    /// Without result: what to bake; hair and environment are given. With result: `hair`, `environment` and `occluder`
+    /// Without result: what to bake; hair and environment are given (the channels transmittance and tangent of the mode
+    /// baked need no environment, nor a result's maps). With result: `hair`, `environment` and `occluder`
     /// say where the files are that it was baked from (else: its transmittance.hair, and the paths in its manifest);
     /// nothing else is looked at.
     BakeRequest bake;

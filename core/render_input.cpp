@@ -17,7 +17,8 @@ namespace fs = std::filesystem;
 namespace {
 
 bool needs_environment(const RenderRequest& request) {
-    return request.mode != ShadingMode::baked || request.background || request.mesh;
+    const bool around = request.frame.channel == Channel::beauty && (request.background || request.mesh);
+    return request.mode != ShadingMode::baked || around;
 }
 
 /// The file, after a look at whether it is the one that was baked.
@@ -48,8 +49,8 @@ std::string environment_of(const RenderRequest& request, const StoredResult& sto
     if (!file || !fs::exists(*file))
         throw Error(ErrorKind::usage,
                     "the environment that " + *request.result +
-                        " was baked from is needed for the background, a mesh and every mode but baked: give the file "
-                        "(--env)",
+                        " was baked from is needed for the background, a mesh's light and every mode but baked: give "
+                        "the file (--env)",
                     "environment");
     // A result of hair alone may be lit by anything.
     return stored.environment_digest.empty() ? *file : checked(*file, stored.environment_digest, "environment");
@@ -82,7 +83,7 @@ RenderInput from_folder(const RenderRequest& request) {
                                               std::to_string(stored.average.size()) + " vertices, the hair has " +
                                               std::to_string(input.hair.vertex_count()) +
                                               "; bake with npy among the outputs");
-    if (request.mode == ShadingMode::baked && !stored.maps)
+    if (request.mode == ShadingMode::baked && shows_light(request) && !stored.maps)
         throw Error(ErrorKind::usage,
                     *request.result + " holds no maps; bake with an environment and npy among the outputs", "result");
     input.average = std::move(stored.average);
@@ -96,11 +97,11 @@ RenderInput from_bake(const RenderRequest& request, Progress& progress) {
     RenderInput input;
     input.bake = request.bake;
     if (!request.bake.hair) throw Error(ErrorKind::usage, "give a result folder, or --hair and --env", "hair");
-    if (!request.bake.environment)
+    if (!request.bake.environment && (shows_light(request) || needs_environment(request)))
         throw Error(ErrorKind::usage, "give a result folder, or --hair and --env", "environment");
     BakeRequest wanted = request.bake;
     wanted.transmittance.reference_vertices = 0;
-    if (request.mode != ShadingMode::baked) wanted.environment.reset();
+    if (request.mode != ShadingMode::baked || !shows_light(request)) wanted.environment.reset();
     BakeResult result = bake(wanted, thread_count(), progress);
     input.hair = result.hair ? std::move(*result.hair) : read_hair(*request.bake.hair);
     input.occluder = std::move(result.occluder);
@@ -113,6 +114,11 @@ RenderInput from_bake(const RenderRequest& request, Progress& progress) {
 }
 
 }  // namespace
+
+bool shows_light(const RenderRequest& request) {
+    const Channel channel = request.frame.channel;
+    return request.mode != ShadingMode::baked || (channel != Channel::transmittance && channel != Channel::tangent);
+}
 
 RenderInput read_render_input(const RenderRequest& request, Progress& progress) {
     RenderInput input = request.result ? from_folder(request) : from_bake(request, progress);

@@ -21,9 +21,12 @@ struct RenderInput {
     std::optional<TriangleMesh> occluder;       ///< stops light, with mode reference
     std::vector<float> average;                 ///< [V]
     std::vector<float> sh, bent_cone;
-    std::optional<IrradianceMaps> maps;  ///< with mode baked
+    std::optional<IrradianceMaps> maps;  ///< with mode baked, where the picture shows light
     std::vector<std::string> warnings;
 };
+
+/// Whether the picture needs light on the hair: the mode baked shows transmittance and tangents without any.
+bool shows_light(const RenderRequest& request);
 
 /// Reads the result folder, or bakes in memory what the mode needs. Throws as render().
 RenderInput read_render_input(const RenderRequest& request, Progress& progress);

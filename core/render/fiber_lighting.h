@@ -46,6 +46,9 @@ public:
 /// A(x) D(t) and A(x) S(t, theta') from the maps, with the interpolation of the run time (irradiance/lookup.h).
 std::unique_ptr<FiberLighting> baked_lighting(const VertexTransmittance& transmittance, const IrradianceMaps& maps);
 
+/// A(x), and no light: for pictures of the transmittance and of the tangents, which need none.
+std::unique_ptr<FiberLighting> average_lighting(const VertexTransmittance& transmittance);
+
 /// A(x) times the sum over every light with the exact kernels: no maps.
 std::unique_ptr<FiberLighting> brute_lighting(const VertexTransmittance& transmittance, const LightSum& lights);
 

@@ -1,4 +1,4 @@
-// The modes that know A alone: from the maps, and from the lights.
+// The modes that know A alone: from the maps, from the lights, and without light.
 #include "core/irradiance/lookup.h"
 #include "core/render/fiber_lighting.h"
 
@@ -25,6 +25,20 @@ private:
     const IrradianceMaps& maps_;
 };
 
+class AverageLighting : public FiberLighting {
+public:
+    explicit AverageLighting(const VertexTransmittance& transmittance) : transmittance_(transmittance) {}
+
+    void light(std::span<const StrandPoint> points, std::span<FiberLight> result,
+               const Progress& progress) const override {
+        progress.check();
+        for (std::size_t i = 0; i < points.size(); ++i) result[i] = {transmittance_.at(points[i].place), {}, {}};
+    }
+
+private:
+    const VertexTransmittance& transmittance_;
+};
+
 class BruteLighting : public FiberLighting {
 public:
     BruteLighting(const VertexTransmittance& transmittance, const LightSum& lights)
@@ -49,6 +63,10 @@ private:
 
 std::unique_ptr<FiberLighting> baked_lighting(const VertexTransmittance& transmittance, const IrradianceMaps& maps) {
     return std::make_unique<BakedLighting>(transmittance, maps);
+}
+
+std::unique_ptr<FiberLighting> average_lighting(const VertexTransmittance& transmittance) {
+    return std::make_unique<AverageLighting>(transmittance);
 }
 
 std::unique_ptr<FiberLighting> brute_lighting(const VertexTransmittance& transmittance, const LightSum& lights) {

@@ -5,6 +5,7 @@
 
 #include "core/base/random.h"
 #include "core/render/fiber_lighting.h"
+#include "core/render/pixel_samples.h"
 
 namespace hairbake {
 namespace {
@@ -82,7 +83,8 @@ public:
                 diffuse.set(b, kernels.sine);
                 specular.set(b, kernels.lobe);
             }
-            Random random(point.seed);
+            // With another number of lights other lights are drawn, so that two pictures tell how large the noise is.
+            Random random(sample_seed(point.seed, static_cast<std::uint64_t>(light_samples_), 0));
             const double guess = guess_.at(point.place);
             FiberLight& light = result[i];
             light.diffuse = arriving(diffuse, unhidden.diffuse, point, guess, random);

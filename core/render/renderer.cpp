@@ -12,7 +12,9 @@ namespace {
 
 constexpr int tile_side = 8;  // small, so that a tile of many samples and lights does not last long
 
-/// One tile: the samples of its pixels, strands lit together at the end.
+constexpr std::size_t most_points = 16384;  // that wait to be lit: many samples a pixel take no more memory than few
+
+/// One tile: the samples of its pixels, strands lit together.
 class Tile {
 public:
     Tile(const RenderScene& scene, const Camera& camera, const FrameSettings& settings, int left, int top)
@@ -27,10 +29,11 @@ public:
 
     void render(const Progress& progress, std::vector<Vec3f>& picture) {
         for (int y = 0; y < height_; ++y)
-            for (int x = 0; x < width_; ++x) look_through_pixel(x, y);
-        light_.resize(points_.size());
-        scene_.lighting.light(points_, light_, progress);
-        for (std::size_t i = 0; i < points_.size(); ++i) sum_[pixel_[i]] += value_of(points_[i], light_[i]);
+            for (int x = 0; x < width_; ++x) {
+                look_through_pixel(x, y);
+                if (points_.size() >= most_points) light_points(progress);
+            }
+        light_points(progress);
         for (int y = 0; y < height_; ++y)
             for (int x = 0; x < width_; ++x)
                 picture[static_cast<std::size_t>(top_ + y) * settings_.width + left_ + x] =
@@ -38,6 +41,14 @@ public:
     }
 
 private:
+    void light_points(const Progress& progress) {
+        light_.resize(points_.size());
+        scene_.lighting.light(points_, light_, progress);
+        for (std::size_t i = 0; i < points_.size(); ++i) sum_[pixel_[i]] += value_of(points_[i], light_[i]);
+        points_.clear();
+        pixel_.clear();
+    }
+
     void look_through_pixel(int x, int y) {
         const auto pixel = static_cast<std::uint64_t>(top_ + y) * settings_.width + left_ + x;
         const std::size_t here = static_cast<std::size_t>(y) * width_ + x;

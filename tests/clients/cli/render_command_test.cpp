@@ -35,6 +35,36 @@ TEST(RenderCommand, BakesInMemoryAndTellsItsProgress) {
     EXPECT_TRUE(contains(run.output, "\"event\":\"done\""));
 }
 
+TEST(RenderCommand, ShowsTransmittanceAndTangentsOfABakeWithoutLight) {
+    // Neither depends on the light: the pictures are those of a bake with an environment, pixel by pixel.
+    const Workshop workshop;
+    const std::string thick = " --set strand.width_scale=20";  // so that the few strands fill some of the picture
+    ASSERT_EQ(hairbake(workshop.quick_bake() + thick).exit_code, 0);
+    ASSERT_EQ(hairbake("bake" + workshop.hair() + thick + workshop.out("dark") +
+                       " --directions 16 --voxels 32 --set transmittance.reference_vertices=0")
+                  .exit_code,
+              0);
+    const auto show = [&](const std::string& what, const std::string& channel, const std::string& file) {
+        return hairbake("render " + what + " --channel " + channel + " --mesh " + workshop.path("samples/head.obj") +
+                        " --out " + workshop.path(file) + " --size 32x24 --samples 2 2>&1");
+    };
+    for (const std::string channel : {"transmittance", "tangent"}) {
+        ASSERT_EQ(show(workshop.path("out") + workshop.env(), channel, "lit.exr").exit_code, 0);
+        const Finished run = show(workshop.path("dark"), channel, "dark.exr");
+        ASSERT_EQ(run.exit_code, 0) << run.output;
+        const auto report = nlohmann::json::parse(
+            hairbake("diff --json " + workshop.path("lit.exr") + " " + workshop.path("dark.exr")).output);
+        EXPECT_EQ(report["max_abs"], 0);
+        EXPECT_GT(report["lit"]["pixels"], 32 * 24 / 20);  // a picture of something
+    }
+    // Baked in memory, no environment has to be named either; where light is shown, it has to.
+    EXPECT_EQ(show(workshop.hair() + " --set transmittance.voxels=32", "tangent", "memory.exr").exit_code, 0);
+    const Finished beauty = show(workshop.path("dark"), "beauty", "beauty.exr");
+    EXPECT_EQ(beauty.exit_code, 2);
+    EXPECT_TRUE(contains(beauty.output, "give the file (--env)")) << beauty.output;
+    EXPECT_EQ(show(workshop.path("dark"), "diffuse", "diffuse.exr").exit_code, 2);
+}
+
 TEST(RenderCommand, RefusesWhatItCannotDo) {
     const Workshop workshop;
     const std::string out = " --out " + workshop.path("a.png");

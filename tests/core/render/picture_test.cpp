@@ -146,6 +146,33 @@ TEST(Picture, IsTheSameToTheLastBitForAnyNumberOfThreadsAndAnotherForAnotherSeed
     EXPECT_FALSE(studio.render(*lighting, camera, frame, &sky) == one);
 }
 
+/// One for every point; counts them.
+class CountingLighting : public FiberLighting {
+public:
+    void light(std::span<const StrandPoint> points, std::span<FiberLight> result, const Progress&) const override {
+        for (FiberLight& light : result) light = {1, Vec3d(1), {}};
+        most = std::max(most, points.size());
+        all += points.size();
+    }
+    mutable std::size_t most = 0, all = 0;
+};
+
+TEST(Picture, OfManySamplesHoldsFewPointsAtATime) {
+    // A strand so thick that it fills the picture: each of the 64 pixels has 1,024 points, 65,536 in all; lit are at
+    // most 16,384 and what one pixel adds. The picture is Kd whatever was lit together.
+    StrandModel model;
+    model.add({{0, -50, 0}, {0, 50, 0}}, 20);
+    Studio studio(model.geometry(), testing::make_map(32, [](const Vec3d&) { return Vec3d(1); }));
+    const CountingLighting lighting;
+    std::vector<Vec3f> pixels;
+    with_threads(1, [&] {
+        pixels = studio.render(lighting, look_at({0, 0, 40}, {}, {0, 1, 0}, 10), frame_of(8, 1024));
+    });
+    EXPECT_EQ(lighting.all, 65536u);
+    EXPECT_LE(lighting.most, 16384u + 1024);
+    for (const Vec3f& pixel : pixels) EXPECT_LT(length(Vec3d(pixel) - studio.kd), 1e-7);
+}
+
 TEST(Picture, ConvergesToTheSameWhateverTheSeed) {
     // Two independent pictures of n samples differ by sqrt(2) sigma / sqrt(n) or less (stratified); 16 times the
     // samples, a quarter of the difference at most, with a margin for what is random: a third.
