@@ -46,6 +46,10 @@ class Hairbake:
             self.commands.append(shlex.join([self.program, *map(str, words)]))
         return json.loads((self.root / folder / "manifest.json").read_text(encoding="utf-8"))
 
+    def seconds(self, stage, folder, hair=None, env=None, **fields):
+        """Wall time of a stage, the best of three bakes into `folder`-0 to -2."""
+        return min(self.bake(f"{folder}-{run}", hair, env, **fields)["timings_s"][stage] for run in range(3))
+
     def render(self, name, *arguments):
         """Renders name.exr and name.png; gives `name`."""
         if not (self.root / f"{name}.exr").exists():

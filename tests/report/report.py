@@ -61,7 +61,7 @@ def main():
                 f"vertices, strands {size.width_scale:g} times as wide as hair so that they cover the head as hair does, "
                 f"generated skies. Pictures of {size.pixels} x {size.pixels} pixels, {size.samples} samples each. "
                 "Commands run from the project's folder.")
-    hairbake.take_commands()
+    page.commands(line for line in hairbake.take_commands() if "--version" not in line)
     for section in (transmittance.with_and_without, lighting.decoupling, lighting.specular_maps, lighting.sh_maps,
                     lighting.map_sizes, lighting.map_update, transmittance.estimators, transmittance.directions,
                     transmittance.offline_times):

@@ -38,7 +38,7 @@ class Scene:
     def __init__(self, hairbake, folder, size):
         self.hairbake, self.folder, self.size = hairbake, folder, size
         self.hairs = {}
-        for style in ("wavy", "straight", "curly"):
+        for style in ("wavy", "straight"):
             sample = folder / f"sample-{style}"
             hairbake.run("sample", sample, "--style", style, "--vertices", size.vertices, "--map-width", size.map_width)
             self.hairs[style] = sample / "groom.hair"
