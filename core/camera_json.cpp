@@ -15,7 +15,7 @@
 namespace hairbake {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 Json read_object(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);

@@ -12,7 +12,7 @@
 namespace hairbake {
 namespace {
 
-struct Options {
+struct BakeOptions {
     RequestFlags request;
     std::string folder, progress = "auto";
     int threads = 0;
@@ -58,7 +58,7 @@ std::string summary(const BakeResult& result, const std::string& folder) {
     return line + text;
 }
 
-void tell_done(const BakeResult& result, const Options& options) {
+void tell_done(const BakeResult& result, const BakeOptions& options) {
     for (const std::string& warning : result.warnings) say_warning(warning);
     if (options.progress == "json")
         std::printf("{\"event\":\"done\",\"folder\":%s,\"id\":%s}\n", json_string(options.folder).c_str(),
@@ -67,7 +67,7 @@ void tell_done(const BakeResult& result, const Options& options) {
         std::printf("%s\n", summary(result, options.folder).c_str());
 }
 
-void run_bake(const Options& options) {
+void run_bake(const BakeOptions& options) {
     const BakeRequest request = make_request(options.request);
     check_result_folder(options.folder);
     BakeResult result;
@@ -80,7 +80,7 @@ void run_bake(const Options& options) {
     tell_done(result, options);
 }
 
-void run(const Options& options) {
+void run(const BakeOptions& options) {
     with_json_failures(options.progress, [&] { run_bake(options); });
 }
 
@@ -88,7 +88,7 @@ void run(const Options& options) {
 
 void add_bake_command(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("bake", "Bake transmittance and irradiance maps into a result folder");
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<BakeOptions>();
     command->add_option("--hair", options->request.hair, "hair model; alone: transmittance only");
     add_request_flags(*command, options->request);
     command->add_option("--out", options->folder, "result folder: new, empty or an earlier result")->required();

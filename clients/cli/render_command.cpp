@@ -12,7 +12,7 @@
 namespace hairbake {
 namespace {
 
-struct Options {
+struct RenderOptions {
     RenderRequest request;
     std::optional<std::string> preset;
     std::vector<std::string> settings, files;
@@ -63,7 +63,7 @@ std::optional<double> parse_exposure(const std::string& text) {
     return stops;
 }
 
-RenderRequest make_request(const Options& options) {
+RenderRequest make_request(const RenderOptions& options) {
     RenderRequest request = options.request;
     if (options.preset) apply_preset(request.bake, *options.preset);
     for (const std::string& setting : options.settings) {
@@ -81,7 +81,7 @@ RenderRequest make_request(const Options& options) {
     return request;
 }
 
-void run(const Options& options) {
+void run(const RenderOptions& options) {
     const RenderRequest request = make_request(options);
     const std::optional<double> exposure = parse_exposure(options.exposure);
     RenderedPicture picture;
@@ -107,7 +107,7 @@ void run(const Options& options) {
                     picture.width, picture.height, request.frame.samples, picture.render_seconds, stops);
 }
 
-void add_scene_options(CLI::App& command, Options& options) {
+void add_scene_options(CLI::App& command, RenderOptions& options) {
     RenderRequest& request = options.request;
     command.add_option("result", request.result, "result folder; without it give --hair and --env")->type_name("DIR");
     command.add_option("--out", options.files, "NAME.png or NAME.exr; may be given twice")
@@ -124,7 +124,7 @@ void add_scene_options(CLI::App& command, Options& options) {
         ->allow_extra_args(false);
 }
 
-void add_shading_options(CLI::App& command, Options& options) {
+void add_shading_options(CLI::App& command, RenderOptions& options) {
     RenderRequest& request = options.request;
     command
         .add_option("--mode", request.mode, "baked (the maps), brute (every light), reference (traced), directional")
@@ -150,7 +150,7 @@ void add_shading_options(CLI::App& command, Options& options) {
         ->capture_default_str();
 }
 
-void add_camera_options(CLI::App& command, Options& options) {
+void add_camera_options(CLI::App& command, RenderOptions& options) {
     RenderRequest& request = options.request;
     command.add_option("--size", options.size, "pixels")->type_name("WxH")->capture_default_str();
     command.add_option("--samples", request.frame.samples, "of a pixel")->capture_default_str();
@@ -170,7 +170,7 @@ void add_camera_options(CLI::App& command, Options& options) {
 
 void add_render_command(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("render", "Render a picture of a result, or of hair under an environment");
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<RenderOptions>();
     add_scene_options(*command, *options);
     add_shading_options(*command, *options);
     add_camera_options(*command, *options);

@@ -17,7 +17,7 @@ constexpr std::size_t most_views = 1000;
 
 // 0 id, 1 state, 2 request, 3 names, 4 hair, 5 environment, 6 priority, 7 transmittance, 8 irradiance, 9 attempts, 10
 // error, 11 created, 12 finished, 13 seq
-constexpr const char* columns =
+constexpr const char* bake_columns =
     "SELECT id, state, request, names, hair, environment, priority, transmittance, irradiance, attempts, error, "
     "created, "
     "finished, seq FROM bakes ";
@@ -134,7 +134,7 @@ std::string Bakes::get(const std::string& id) {
     std::string answer;
     database_.read([&](Sql& sql) {
         version = database_.version_read();
-        const auto rows = sql.rows(std::string(columns) + "WHERE id = ?", {id});
+        const auto rows = sql.rows(std::string(bake_columns) + "WHERE id = ?", {id});
         if (rows.empty()) refuse_unknown(id);
         answer = full_view(sql, queue_, rows[0]).dump();
         done = rows[0].text(1) == "done";
@@ -159,7 +159,7 @@ std::string Bakes::list(const BakeFilter& filter) {
     values.emplace_back(std::int64_t(filter.limit) + 1);
     Json answer{{"bakes", Json::array()}, {"next", nullptr}};
     database_.read([&](Sql& sql) {
-        const auto rows = sql.rows(columns + where + " ORDER BY seq DESC LIMIT ?", values);
+        const auto rows = sql.rows(bake_columns + where + " ORDER BY seq DESC LIMIT ?", values);
         const auto limit = static_cast<std::size_t>(filter.limit);
         for (std::size_t i = 0; i < std::min(limit, rows.size()); ++i) {
             answer["bakes"].push_back(short_view(rows[i]));
@@ -173,7 +173,7 @@ std::string Bakes::list(const BakeFilter& filter) {
 BakeFile Bakes::file(const std::string& id, const std::string& name) {
     BakeFile file{name, {}, {}, {}};
     database_.read([&](Sql& sql) {
-        const auto rows = sql.rows(std::string(columns) + "WHERE id = ?", {id});
+        const auto rows = sql.rows(std::string(bake_columns) + "WHERE id = ?", {id});
         if (rows.empty()) refuse_unknown(id);
         const SqlRow& bake = rows[0];
         if (bake.text(1) != "done")

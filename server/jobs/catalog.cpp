@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Columns: seq, sha256, facts, thumbnail, created, bytes.
-constexpr const char* columns =
+constexpr const char* input_columns =
     "SELECT i.seq, i.sha256, i.facts, i.thumbnail, i.created, b.bytes FROM inputs i JOIN blobs b USING(sha256) ";
 
 Json entry(const std::string& kind, const SqlRow& row) {
@@ -89,7 +89,7 @@ void Catalog::inspect(const std::string& kind, const std::string& digest) {
 std::string Catalog::get(const std::string& kind, const std::string& digest) {
     std::string answer;
     database_.read([&](Sql& sql) {
-        const auto rows = sql.rows(std::string(columns) + "WHERE kind = ? AND sha256 = ?", {kind, digest});
+        const auto rows = sql.rows(std::string(input_columns) + "WHERE kind = ? AND sha256 = ?", {kind, digest});
         if (!rows.empty()) answer = entry(kind, rows[0]).dump();
     });
     if (answer.empty()) refuse_unknown(kind, digest);
@@ -100,7 +100,7 @@ std::string Catalog::list(const std::string& kind, std::int64_t cursor, int limi
     Json answer{{kind + "s", Json::array()}, {"next", nullptr}};
     Json& entries = answer[kind + "s"];
     database_.read([&](Sql& sql) {
-        const auto rows = sql.rows(std::string(columns) + "WHERE kind = ? AND seq < ? ORDER BY seq DESC LIMIT ?",
+        const auto rows = sql.rows(std::string(input_columns) + "WHERE kind = ? AND seq < ? ORDER BY seq DESC LIMIT ?",
                                    {kind, cursor, std::int64_t(limit) + 1});
         for (std::size_t i = 0; i < rows.size() && i < static_cast<std::size_t>(limit); ++i)
             entries.push_back(entry(kind, rows[i]));

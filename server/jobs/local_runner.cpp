@@ -21,7 +21,7 @@ namespace hairbake {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 constexpr std::size_t longest_line = 1 << 20;  // a worker that talks more than that without a line end is not ours
 
 struct Pipe {

@@ -13,7 +13,7 @@ namespace {
 
 using Json = Server::Json;
 
-struct Options {
+struct RebakeOptions {
     ConnectionFlags connection;
     std::string environment, replaces, name, irradiance, folder;
     std::vector<std::string> bakes, models;
@@ -22,7 +22,7 @@ struct Options {
 };
 
 /// The request; files among its values must have been sent.
-Json body_of(const Options& options, const InputFiles& inputs) {
+Json body_of(const RebakeOptions& options, const InputFiles& inputs) {
     Json body{{"environment", inputs.reference(options.environment)}, {"priority", options.priority}};
     if (!options.bakes.empty()) body["bakes"] = options.bakes;
     if (!options.replaces.empty()) body["replaces"] = inputs.reference(options.replaces);
@@ -32,7 +32,7 @@ Json body_of(const Options& options, const InputFiles& inputs) {
     return body;
 }
 
-void check(const Options& options) {
+void check(const RebakeOptions& options) {
     const int sources =
         !options.bakes.empty() + !options.replaces.empty() + !options.name.empty() + !options.models.empty();
     if (sources != 1)
@@ -49,7 +49,7 @@ std::string count_words(const Json& counts) {
            std::to_string(counts.at("irradiance").get<std::int64_t>()) + " irradiance stages";
 }
 
-void tell(const Options& options, const Json& answer) {
+void tell(const RebakeOptions& options, const Json& answer) {
     if (options.connection.json()) {
         Json line{{"event", options.dry_run ? "forecast" : "submitted"}};
         line.update(answer);
@@ -65,7 +65,7 @@ void tell(const Options& options, const Json& answer) {
         print_line(id_in(answer, "id") + " " + bakes);
 }
 
-void run(Options options) {
+void run(RebakeOptions options) {
     options.wait = options.wait || !options.folder.empty();
     check(options);
     InputFiles inputs;
@@ -97,7 +97,7 @@ void run(Options options) {
 
 void add_rebake_command(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("rebake", "Bake grooms again on a service under a new environment");
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<RebakeOptions>();
     command->add_option("--env", options->environment, "the new environment: a file, sha256:DIGEST or name:NAME")
         ->required();
     command->add_option("--bake", options->bakes, "id of a bake to repeat; may be given more than once")

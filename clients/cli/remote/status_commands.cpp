@@ -11,32 +11,32 @@ namespace {
 
 using Json = Server::Json;
 
-struct Options {
+struct StatusOptions {
     ConnectionFlags connection;
     std::vector<std::string> ids;
     std::string batch, state;
     bool json = false;
 };
 
-std::string text_in(const Json& view, const char* field) {
+std::string plain_field(const Json& view, const char* field) {
     return view.contains(field) && view[field].is_string() ? plain(view[field].get<std::string>()) : "";
 }
 
 /// "ID running 43 %, 12 s left; hair 0123456789ab, environment stage1/sunset"
 std::string line_of(const Json& view) {
-    const std::string state = text_in(view, "state");
+    const std::string state = plain_field(view, "state");
     std::string line = id_in(view, "id") + " " + state;
     if (state == "running" && view.contains("fraction"))
         line += " " + std::to_string(std::lround(100 * view["fraction"].get<double>())) + " %";
     if (view.contains("seconds_left") && view["seconds_left"].is_number())
         line += ", " + std::to_string(std::lround(view["seconds_left"].get<double>())) + " s left";
     for (const auto& [field, name] : {std::pair("model", "hair"), std::pair("environment", "environment")}) {
-        std::string value = text_in(view, field).substr(0, 12);
+        std::string value = plain_field(view, field).substr(0, 12);
         const Json names = view.value("names", Json::object());
-        if (names.contains(name)) value = text_in(names[name], "path");
+        if (names.contains(name)) value = plain_field(names[name], "path");
         if (!value.empty()) line += std::string("; ") + name + " " + value;
     }
-    if (view.contains("error") && view["error"].is_object()) line += ": " + text_in(view["error"], "message");
+    if (view.contains("error") && view["error"].is_object()) line += ": " + plain_field(view["error"], "message");
     return line;
 }
 
@@ -49,7 +49,7 @@ std::string batch_line(const Json& view) {
     return line;
 }
 
-std::vector<Json> views(Server& server, const Options& options) {
+std::vector<Json> views(Server& server, const StatusOptions& options) {
     std::vector<Json> found;
     if (!options.batch.empty()) found.push_back(server.json("GET", "/v1/batches/" + options.batch));
     for (const std::string& id : options.ids) found.push_back(server.json("GET", "/v1/bakes/" + id));
@@ -60,7 +60,7 @@ std::vector<Json> views(Server& server, const Options& options) {
     return found;
 }
 
-void run_status(const Options& options) {
+void run_status(const StatusOptions& options) {
     check_ids(options.ids, "id");
     if (!options.batch.empty()) check_ids({options.batch}, "batch");
     std::vector<std::string> lines;
@@ -81,7 +81,7 @@ void cancel(Server& server, const std::string& id) {
     if (answer.status != 200) refuse(answer);
 }
 
-void run_cancel(const Options& options) {
+void run_cancel(const StatusOptions& options) {
     check_ids_or_batch(options.ids, options.batch, "cancel");
     std::vector<std::string> ids = options.ids;
     run_phase(options.connection, server_options(options.connection), {}, [&](Server& server) {
@@ -99,7 +99,7 @@ void run_cancel(const Options& options) {
 
 void add_status_command(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("status", "Tell how bakes on a service are doing");
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<StatusOptions>();
     command->add_option("id", options->ids, "of bakes; without: the 20 newest")->type_name("ID");
     command->add_option("--batch", options->batch, "counts of a batch, as rebake prints it")->type_name("ID");
     command->add_option("--state", options->state, "of the newest, only those that are so")
@@ -113,7 +113,7 @@ void add_status_command(CLI::App& app, Action& action) {
 
 void add_cancel_command(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("cancel", "Cancel bakes on a service");
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<StatusOptions>();
     command->add_option("id", options->ids, "of bakes, as submit prints them")->type_name("ID");
     command->add_option("--batch", options->batch, "what has not ended of a batch")->type_name("ID");
     add_connection_flags(*command, options->connection);

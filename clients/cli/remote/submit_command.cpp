@@ -17,7 +17,7 @@ namespace {
 
 using Json = Server::Json;
 
-struct Options {
+struct SubmitOptions {
     RequestFlags request;
     ConnectionFlags connection;
     std::vector<std::string> hairs;
@@ -38,7 +38,7 @@ std::string short_name(const std::string& hair) {
     return std::filesystem::path(hair.starts_with("name:") ? hair.substr(5) : hair).stem();
 }
 
-std::vector<Job> make_jobs(const Options& options) {
+std::vector<Job> make_jobs(const SubmitOptions& options) {
     std::vector<Job> jobs;
     std::map<std::string, std::string> folders;
     for (std::size_t i = 0; i == 0 || i < options.hairs.size(); ++i) {
@@ -67,7 +67,7 @@ void submit(Server& server, const InputFiles& inputs, Job& job, int priority) {
     job.state = plain(answer.at("state").get<std::string>());
 }
 
-void tell_submitted(const Options& options, const Job& job) {
+void tell_submitted(const SubmitOptions& options, const Job& job) {
     if (options.connection.json())
         print_line(Json{{"event", "submitted"}, {"id", job.id}, {"state", job.state}, {"input", job.label}}.dump(
             -1, ' ', false, Json::error_handler_t::replace));
@@ -77,7 +77,7 @@ void tell_submitted(const Options& options, const Job& job) {
         print_line(job.id + " " + job.state + " " + job.label);
 }
 
-void run(Options options) {
+void run(SubmitOptions options) {
     options.wait = options.wait || !options.folder.empty();
     std::vector<Job> jobs = make_jobs(options);
     InputFiles inputs;
@@ -111,7 +111,7 @@ void run(Options options) {
 
 void add_submit_command(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("submit", "Have a service bake what `bake` would bake here");
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<SubmitOptions>();
     command
         ->add_option("--hair", options->hairs,
                      "hair model; several make a bake each. Every input is a file, sha256:DIGEST or name:NAME")

@@ -11,7 +11,7 @@ namespace {
 
 using Json = Server::Json;
 
-struct Options {
+struct UploadOptions {
     ConnectionFlags connection;
     std::vector<std::string> files;
     std::string kind, name, note;
@@ -23,7 +23,7 @@ bool is_name(const std::string& name) {
     return !name.empty() && name.size() <= 512 && std::all_of(name.begin(), name.end(), fits);
 }
 
-void check(const Options& options) {
+void check(const UploadOptions& options) {
     if (options.name.empty()) return;
     if (options.files.size() != 1 || options.kind.empty())
         throw Error(ErrorKind::usage, "--name goes with one file and --as", "name");
@@ -31,7 +31,7 @@ void check(const Options& options) {
         throw Error(ErrorKind::usage, "name is " + options.name + "; allowed are letters, digits and . _ - /", "name");
 }
 
-void run(const Options& options) {
+void run(const UploadOptions& options) {
     check(options);
     InputFiles inputs;
     for (const std::string& file : options.files) inputs.add(file, "file");
@@ -58,7 +58,7 @@ void run(const Options& options) {
 
 void add_upload_command(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("upload", "Send files to a service that lacks them");
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<UploadOptions>();
     command->add_option("file", options->files, "hair models, environments, meshes")->required()->type_name("FILE");
     command
         ->add_option("--as", options->kind,
