@@ -93,7 +93,12 @@ HttpReply json_reply(int status, std::string json) {
 }
 
 HttpReply cached_json(const HttpRequest& request, std::string json) {
-    const std::string tag = quoted(Digest().add(json).hex().substr(0, 32));
+    const std::string digest = Digest().add(json).hex();
+    return cached_json(request, std::move(json), digest);
+}
+
+HttpReply cached_json(const HttpRequest& request, std::string json, const std::string& digest) {
+    const std::string tag = quoted(digest.substr(0, 32));
     if (const auto list = request.header("If-None-Match"); list && names_tag(*list, tag)) return not_modified(tag);
     return json_reply(200, std::move(json)).with("ETag", tag).with("Cache-Control", "no-cache");
 }

@@ -15,6 +15,8 @@ HttpReply json_reply(int status, std::string json);
 
 /// JSON that is asked for again and again: an ETag made from it, 304 when the client has it.
 HttpReply cached_json(const HttpRequest& request, std::string json);
+/// The same of a text whose digest is known.
+HttpReply cached_json(const HttpRequest& request, std::string json, const std::string& digest);
 
 /// A blob, whose digest is its strong ETag: If-None-Match, one Range (If-Range counts), 416 with Content-Range. More
 /// than one range is answered with the whole.

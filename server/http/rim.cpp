@@ -15,6 +15,7 @@
 
 #include "core/base/error.h"
 #include "server/http/bounded_pool.h"
+#include "server/http/connection.h"
 #include "server/http/problem.h"
 #include "server/http/target.h"
 #include "server/jobs/service.h"
@@ -22,11 +23,12 @@
 namespace hairbake {
 namespace {
 
-constexpr std::chrono::milliseconds read_patience(1000), refused_patience(20);
-constexpr int read_timeout_s = 30, write_timeout_s = 60, first_byte_timeout_s = 10;
+using namespace std::chrono_literals;
+constexpr Connection::Patience patience{.first_byte = 10s, .read = 30s, .write = 60s};
+constexpr std::chrono::milliseconds lingering = 1s, lingering_refused = 20ms;
 const std::string any_path = "/";  // the library routes nothing: every request is made to look for this
 
-/// The current connection's request body was not read to its end.
+/// The current connection's request was not read to its end.
 thread_local bool body_left = false;
 
 /// Connections that wait for a thread, as the library wants them.
@@ -40,67 +42,40 @@ private:
     BoundedPool pool_;
 };
 
-/// Holds back what is written until it is worth a packet or flush() is called: the library writes head and body of a
-/// reply one by one.
-class GatheredStream : public httplib::Stream {
+/// A connection as the library wants it.
+class ConnectionStream : public httplib::Stream {
 public:
-    explicit GatheredStream(httplib::Stream& stream) : stream_(stream) {}
+    explicit ConnectionStream(Connection& connection) : connection_(connection) {}
 
-    bool is_readable() const override { return stream_.is_readable(); }
-    bool is_writable() const override { return stream_.is_writable(); }
-    ssize_t read(char* data, std::size_t size) override { return flush() ? stream_.read(data, size) : -1; }
-    ssize_t write(const char* data, std::size_t size) override {
-        if (held_.size() + size > most_held) return flush() ? stream_.write(data, size) : -1;
-        held_.append(data, size);
-        return static_cast<ssize_t>(size);
-    }
-    bool flush() {
-        std::size_t sent = 0;
-        while (sent < held_.size()) {
-            const ssize_t count = stream_.write(held_.data() + sent, held_.size() - sent);
-            if (count <= 0) return false;
-            sent += static_cast<std::size_t>(count);
-        }
-        held_.clear();
-        return true;
-    }
-    void get_remote_ip_and_port(std::string& ip, int& port) const override { stream_.get_remote_ip_and_port(ip, port); }
-    void get_local_ip_and_port(std::string& ip, int& port) const override { stream_.get_local_ip_and_port(ip, port); }
-    socket_t socket() const override { return stream_.socket(); }
+    bool is_readable() const override { return connection_.await_readable(); }
+    bool is_writable() const override { return connection_.await_writable(); }
+    ssize_t read(char* data, std::size_t size) override { return connection_.read(data, size); }
+    ssize_t write(const char* data, std::size_t size) override { return connection_.write(data, size); }
+    void get_remote_ip_and_port(std::string&, int&) const override {}  // nobody asks
+    void get_local_ip_and_port(std::string&, int&) const override {}
+    socket_t socket() const override { return connection_.socket(); }
 
 private:
-    static constexpr std::size_t most_held = 16384;
-    httplib::Stream& stream_;
-    std::string held_;
+    Connection& connection_;
 };
 
-void refuse_connection(socket_t connection) {
+/// Waits for nobody: many wait for the one thread that refuses.
+bool refuse_connection(socket_t accepted) {
+    Connection connection(accepted, {.first_byte = 0s, .read = 0s, .write = 0s});
     HttpReply busy = problem(503, "busy", "too many requests are waiting");
     const std::string text = "HTTP/1.1 503 Service Unavailable\r\nContent-Type: " + busy.type +
                              "\r\nContent-Length: " + std::to_string(busy.body.size()) +
                              "\r\nRetry-After: 2\r\nConnection: close\r\n\r\n" + busy.body;
-    ::send(connection, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
-}
-
-/// Reads away what a client still sends, for a moment, so that the reply is not lost in a connection reset.
-void linger(socket_t connection, std::chrono::milliseconds patience) {
-    ::shutdown(connection, SHUT_WR);
-    const auto end = std::chrono::steady_clock::now() + patience;
-    char sink[65536];
-    for (std::size_t total = 0; total < (16u << 20) && std::chrono::steady_clock::now() < end;) {
-        pollfd ready{connection, POLLIN, 0};
-        if (::poll(&ready, 1, static_cast<int>(patience.count() / 10)) < 0) return;
-        if (!ready.revents) continue;
-        const ssize_t count = ::recv(connection, sink, sizeof sink, MSG_DONTWAIT);
-        if (count <= 0) return;
-        total += static_cast<std::size_t>(count);
-    }
+    connection.write(text.data(), text.size());
+    connection.flush();
+    connection.linger(lingering_refused);
+    return false;
 }
 
 bool is_chunked(const httplib::Request& request) { return request.has_header("Transfer-Encoding"); }
 
 /// What is wrong with the head of a request, as a reply.
-std::optional<HttpReply> wrong_head(const httplib::Request& request) {
+std::optional<HttpReply> wrong_head(const httplib::Request& request, const std::optional<Target>& target) {
     const auto refuse = [](const std::string& words) { return problem(400, "malformed", words); };
     for (const auto& [name, value] : request.headers)
         if (has_control_characters(name) || has_control_characters(value))
@@ -121,7 +96,7 @@ std::optional<HttpReply> wrong_head(const httplib::Request& request) {
         return problem(415, "unsupported", "bodies are not taken compressed", "Content-Encoding");
     if (request.get_header_value("Content-Type").starts_with("multipart/"))
         return problem(415, "unsupported", "a body is one file or one JSON object", "Content-Type");
-    if (!read_target(request.target)) return refuse("the address is not a plain path");
+    if (!target) return refuse("the address is not a plain path");
     return std::nullopt;
 }
 
@@ -142,12 +117,11 @@ void read_body(const httplib::ContentReader& reader, const std::function<void(st
     body_left = false;
 }
 
-HttpRequest to_request(const httplib::Request& from, const httplib::ContentReader* reader) {
+HttpRequest to_request(const httplib::Request& from, Target target, const httplib::ContentReader* reader) {
     HttpRequest request;
     request.method = from.method;
-    const Target target = *read_target(from.target);
-    request.path = target.path;
-    request.query = target.query;
+    request.path = std::move(target.path);
+    request.query = std::move(target.query);
     if (from.has_header("Content-Length"))
         request.content_length = read_length(from.get_header_value("Content-Length"));
     request.has_body = is_chunked(from) || request.content_length.value_or(0) > 0;
@@ -183,14 +157,14 @@ void leave_to_nginx(HttpReply& reply, const std::string& accel) {
     reply.file.reset();
 }
 
-void fill(httplib::Response& to, const HttpReply& reply) {
+void fill(httplib::Response& to, HttpReply reply) {
     to.status = reply.status;
     for (const auto& [name, value] : reply.headers) to.set_header(name, value);
     to.set_header("X-Content-Type-Options", "nosniff");
     if (reply.file && reply.file->length > 0)
         send_file(to, *reply.file, reply.type);
     else if (!reply.body.empty())
-        to.set_content(reply.body, reply.type);
+        to.set_content(std::move(reply.body), reply.type);
 }
 
 /// A daemon that was killed leaves its socket behind. One that somebody listens on is not ours to take, nor is a file
@@ -215,10 +189,6 @@ class Rim::Listener : public httplib::Server {
 public:
     Listener(const RimSettings& settings, Rim::Handler handler) : handler_(std::move(handler)), accel_(settings.accel) {
         new_task_queue = [settings] { return new WaitingConnections(settings.threads, settings.waiting); };
-        set_keep_alive_max_count(1);
-        set_keep_alive_timeout(first_byte_timeout_s);
-        set_read_timeout(read_timeout_s, 0);
-        set_write_timeout(write_timeout_s, 0);
         set_tcp_nodelay(true);
         set_payload_max_length(std::numeric_limits<std::size_t>::max());  // routes count for themselves
         // Not SO_REUSEPORT, with which two daemons would share a port.
@@ -227,18 +197,21 @@ public:
             ::setsockopt(listening, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
             ::fcntl(listening, F_SETFD, FD_CLOEXEC);
         });
-        set_pre_routing_handler([](const httplib::Request& request, httplib::Response& response) {
+        set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
             body_left = request.has_header("Content-Length") || is_chunked(request);
-            const std::optional<HttpReply> wrong = wrong_head(request);
-            if (wrong) fill(response, *wrong);
-            return wrong ? HandlerResponse::Handled : HandlerResponse::Unhandled;
+            std::optional<Target> target = read_target(request.target);
+            if (std::optional<HttpReply> wrong = wrong_head(request, target))
+                fill(response, std::move(*wrong));
+            else if (request.method == "GET" || request.method == "HEAD" || request.method == "OPTIONS")
+                answer(request, std::move(*target), nullptr, response);
+            else
+                return HandlerResponse::Unhandled;  // those below have a body that is read
+            return HandlerResponse::Handled;
         });
-        const auto plain = [this](const httplib::Request& request, httplib::Response& response) {
-            answer(request, nullptr, response);
-        };
         const auto with_body = [this](const httplib::Request& request, httplib::Response& response,
-                                      const httplib::ContentReader& reader) { answer(request, &reader, response); };
-        Get(any_path, plain).Options(any_path, plain);
+                                      const httplib::ContentReader& reader) {
+            answer(request, *read_target(request.target), &reader, response);
+        };
         Post(any_path, with_body).Put(any_path, with_body).Patch(any_path, with_body).Delete(any_path, with_body);
         set_exception_handler(
             [](const httplib::Request&, httplib::Response& response, const std::exception_ptr& failure) {
@@ -285,37 +258,40 @@ private:
         address = "http://" + (six ? "[" + settings.address + "]" : settings.address) + ":" + std::to_string(port);
     }
 
-    void answer(const httplib::Request& from, const httplib::ContentReader* reader, httplib::Response& to) {
-        HttpRequest request = to_request(from, reader);
+    void answer(const httplib::Request& from, Target target, const httplib::ContentReader* reader,
+                httplib::Response& to) {
+        HttpRequest request = to_request(from, std::move(target), reader);
         HttpReply reply = handler_(request);
         if (reply.file && !accel_.empty() && is_forwarded(request)) leave_to_nginx(reply, accel_);
-        fill(to, reply);
+        fill(to, std::move(reply));
     }
 
-    bool process_and_close_socket(socket_t connection) override {
-        bool served = false;
-        body_left = false;
-        if (BoundedPool::is_refusing()) {
-            refuse_connection(connection);
-            body_left = true;
-        } else {
-            served = httplib::detail::process_server_socket(
-                svr_sock_, connection, 1, first_byte_timeout_s, read_timeout_s, 0, write_timeout_s, 0,
-                [&](httplib::Stream& stream, bool close, bool& closed) {
-                    GatheredStream gathered(stream);
-                    const bool done =
-                        process_request(gathered, "", 0, "", 0, close, closed, [](httplib::Request& request) {
-                            request.path = any_path;  // ours are in the target
-                            request.ranges.clear();   // likewise
-                        });
-                    return gathered.flush() && done;
-                });
+    bool process_and_close_socket(socket_t accepted) override {
+        try {
+            return BoundedPool::is_refusing() ? refuse_connection(accepted) : serve_connection(accepted);
+        } catch (const std::exception& error) {  // memory ran out where the library does not look for it
+            spdlog::error("a connection was dropped: {}", error.what());
+            return false;
         }
-        // Many wait for the one thread that refuses.
-        if (body_left) linger(connection, BoundedPool::is_refusing() ? refused_patience : read_patience);
-        httplib::detail::shutdown_socket(connection);
-        httplib::detail::close_socket(connection);
-        return served;
+    }
+
+    bool serve_connection(socket_t accepted) {
+        Connection connection(accepted, patience);
+        if (!connection.await_request([this] { return svr_sock_ != INVALID_SOCKET; })) return false;
+        body_left = true;  // until the head is understood
+        const bool served = serve_request(connection);
+        const bool sent = connection.flush();
+        if (body_left) connection.linger(lingering);
+        return served && sent;
+    }
+
+    bool serve_request(Connection& connection) {
+        ConnectionStream stream(connection);
+        bool closed = false;
+        return process_request(stream, "", 0, "", 0, true, closed, [](httplib::Request& request) {
+            request.path = any_path;  // ours are in the target
+            request.ranges.clear();   // likewise
+        });
     }
 
     Rim::Handler handler_;

@@ -62,11 +62,14 @@ std::vector<Route> bake_routes(Service& service) {
         {"POST", "/v1/bakes", Scope::bake, request_limit, bound(post_bake), {"application/json"}},
         {"GET", "/v1/bakes", Scope::read, 0, bound(list_bakes)},
         {"GET", "/v1/bakes/{id}", Scope::read, 0,
-         [&service](HttpRequest& r) { return cached_json(r, service.bakes().get(r.parameters.at("id"))); }},
+         [&service](HttpRequest& r) {
+             BakeView view = service.bakes().get(r.parameters.at("id"));
+             return cached_json(r, std::move(view.json), view.digest);
+         }},
         {"DELETE", "/v1/bakes/{id}", Scope::bake, 0,
          [&service](HttpRequest& r) {
              service.queue().cancel(r.parameters.at("id"));
-             return json_reply(200, service.bakes().get(r.parameters.at("id")));
+             return json_reply(200, service.bakes().get(r.parameters.at("id")).json);
          }},
         {"GET", "/v1/bakes/{id}/files/{name}", Scope::read, 0, bound(get_file)},
         {"POST", "/v1/rebakes", Scope::bake, rebake_limit, bound(post_rebake), {"application/json"}},

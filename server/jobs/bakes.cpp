@@ -111,7 +111,7 @@ std::string stage_manifest(Sql& sql, const SqlRow& bake, std::size_t column) {
 
 }  // namespace
 
-std::optional<std::string> Bakes::known_view(const std::string& id) {
+std::optional<BakeView> Bakes::known_view(const std::string& id) {
     const std::lock_guard lock(mutex_);
     if (views_.version != database_.version()) return std::nullopt;
     const auto found = views_.of.find(id);
@@ -119,7 +119,7 @@ std::optional<std::string> Bakes::known_view(const std::string& id) {
     return found->second;
 }
 
-void Bakes::keep_view(std::uint64_t version, const std::string& id, const std::string& view) {
+void Bakes::keep_view(std::uint64_t version, const std::string& id, const BakeView& view) {
     const std::lock_guard lock(mutex_);
     if (version < views_.version) return;
     if (version > views_.version || views_.of.size() >= most_views) views_.of.clear();
@@ -127,18 +127,19 @@ void Bakes::keep_view(std::uint64_t version, const std::string& id, const std::s
     views_.of[id] = view;
 }
 
-std::string Bakes::get(const std::string& id) {
+BakeView Bakes::get(const std::string& id) {
     if (auto view = known_view(id)) return *view;
     std::uint64_t version = 0;
     bool done = false;
-    std::string answer;
+    BakeView answer;
     database_.read([&](Sql& sql) {
         version = database_.version_read();
         const auto rows = sql.rows(std::string(bake_columns) + "WHERE id = ?", {id});
         if (rows.empty()) refuse_unknown(id);
-        answer = full_view(sql, queue_, rows[0]).dump();
+        answer.json = full_view(sql, queue_, rows[0]).dump();
         done = rows[0].text(1) == "done";
     });
+    answer.digest = Digest().add(answer.json).hex();
     if (done) keep_view(version, id, answer);
     return answer;
 }

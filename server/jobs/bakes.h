@@ -25,13 +25,18 @@ struct BakeFile {
     std::string text;
 };
 
+/// A bake as a JSON object, and the text's digest.
+struct BakeView {
+    std::string json, digest;
+};
+
 /// Thread-safe. Answers are JSON objects.
 class Bakes {
 public:
     Bakes(Database& database, Queue& queue) : database_(database), queue_(queue) {}
 
     /// Throws Refusal(not_found).
-    std::string get(const std::string& id);
+    BakeView get(const std::string& id);
     /// {"bakes": [...], "next": cursor or null}, newest first, without their requests.
     std::string list(const BakeFilter& filter);
     /// Throws Refusal(not_found); Refusal(conflict) while the bake is not done.
@@ -41,10 +46,10 @@ private:
     /// Views of done bakes at one version of the database: they are asked for again and again.
     struct Views {
         std::uint64_t version = 0;
-        std::unordered_map<std::string, std::string> of;
+        std::unordered_map<std::string, BakeView> of;
     };
-    std::optional<std::string> known_view(const std::string& id);
-    void keep_view(std::uint64_t version, const std::string& id, const std::string& view);
+    std::optional<BakeView> known_view(const std::string& id);
+    void keep_view(std::uint64_t version, const std::string& id, const BakeView& view);
 
     Database& database_;
     Queue& queue_;

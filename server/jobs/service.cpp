@@ -114,7 +114,7 @@ std::optional<Service::Answer> Service::answer_if_done(const std::string& body) 
     database_.read([&](Sql& sql) {
         const AskedBake asked = read_bake_request(sql, body);
         const std::string id = bake_id_of(asked.request);
-        if (queue_.note_done(sql, id, asked.names)) answer = {id, "done", bakes_.get(id)};
+        if (queue_.note_done(sql, id, asked.names)) answer = {id, "done", bakes_.get(id).json};
     });
     return answer;
 }
@@ -125,7 +125,7 @@ Service::Answer Service::submit(const std::string& body) {
     BakePlan plan;
     database_.read([&](Sql& sql) { plan = plan_bake(sql, read_bake_request(sql, body)); });
     const Submitted submitted = queue_.submit({plan}).at(0);
-    return {submitted.id, submitted.state, bakes_.get(submitted.id)};
+    return {submitted.id, submitted.state, bakes_.get(submitted.id).json};
 }
 
 std::string Service::not_ready() {

@@ -1,0 +1,125 @@
+#include "server/http/connection.h"
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+
+namespace hairbake {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+constexpr std::size_t most_held = 16384, most_lingering = 16u << 20;
+constexpr milliseconds glance(10);  // how soon a waiting thread notices that it is not wanted any more
+
+bool must_wait() { return errno == EAGAIN || errno == EWOULDBLOCK; }
+
+/// -1, or what the call gave when no signal had come between.
+template <class Call>
+ssize_t uninterrupted(Call call) {
+    for (;;) {
+        const ssize_t count = call();
+        if (count >= 0 || errno != EINTR) return count;
+    }
+}
+
+}  // namespace
+
+Connection::Connection(int socket, const Patience& patience) : socket_(socket), patience_(patience) {}
+
+Connection::~Connection() { ::close(socket_); }
+
+bool Connection::await(short event, milliseconds patience) const {
+    const auto end = Clock::now() + patience;
+    const ssize_t count = uninterrupted([&] {
+        const auto left = std::chrono::ceil<milliseconds>(end - Clock::now()).count();
+        pollfd ready{socket_, event, 0};
+        return ssize_t(::poll(&ready, 1, static_cast<int>(std::max<decltype(left)>(left, 0))));
+    });
+    return count > 0;
+}
+
+bool Connection::await_readable() const { return ahead_begin_ < ahead_end_ || await(POLLIN, patience_.read); }
+
+bool Connection::await_writable() const { return await(POLLOUT, patience_.write); }
+
+/// Without waiting.
+ssize_t Connection::receive(char* data, std::size_t size) const {
+    return uninterrupted([&] { return ::recv(socket_, data, size, MSG_DONTWAIT); });
+}
+
+ssize_t Connection::send(const char* data, std::size_t size) const {
+    return uninterrupted([&] { return ::send(socket_, data, size, MSG_DONTWAIT | MSG_NOSIGNAL); });
+}
+
+bool Connection::await_request(const std::function<bool()>& still_wanted) {
+    const auto end = Clock::now() + patience_.first_byte;
+    ssize_t count = receive(ahead_.data(), ahead_.size());  // most often it is there
+    while (count < 0 && must_wait() && still_wanted() && Clock::now() < end) {
+        await(POLLIN, glance);
+        count = receive(ahead_.data(), ahead_.size());
+    }
+    ahead_end_ = static_cast<std::size_t>(std::max<ssize_t>(count, 0));
+    return count > 0;
+}
+
+ssize_t Connection::read(char* data, std::size_t size) {
+    if (ahead_begin_ == ahead_end_) {
+        if (!flush()) return -1;
+        const bool whole = size >= ahead_.size();  // not worth a copy
+        char* const into = whole ? data : ahead_.data();
+        const std::size_t room = whole ? size : ahead_.size();
+        ssize_t count = receive(into, room);
+        if (count < 0 && must_wait() && await_readable()) count = receive(into, room);
+        if (whole || count <= 0) return count;
+        ahead_begin_ = 0;
+        ahead_end_ = static_cast<std::size_t>(count);
+    }
+    const std::size_t count = std::min(size, ahead_end_ - ahead_begin_);
+    std::copy_n(ahead_.data() + ahead_begin_, count, data);
+    ahead_begin_ += count;
+    return static_cast<ssize_t>(count);
+}
+
+ssize_t Connection::write(const char* data, std::size_t size) {
+    if (held_.size() + size > most_held) {
+        if (!flush() || (size > most_held && !send_all(data, size))) return -1;
+        if (size > most_held) return static_cast<ssize_t>(size);
+    }
+    held_.append(data, size);
+    return static_cast<ssize_t>(size);
+}
+
+bool Connection::flush() {
+    const bool sent = send_all(held_.data(), held_.size());
+    held_.clear();
+    return sent;
+}
+
+bool Connection::send_all(const char* data, std::size_t size) const {
+    while (size > 0) {
+        const ssize_t count = send(data, size);
+        if (count < 0 && must_wait() && await_writable()) continue;
+        if (count <= 0) return false;
+        data += count;
+        size -= static_cast<std::size_t>(count);
+    }
+    return true;
+}
+
+void Connection::linger(milliseconds patience) const {
+    ::shutdown(socket_, SHUT_WR);
+    const auto end = Clock::now() + patience;
+    std::array<char, 65536> sink;
+    for (std::size_t total = 0; total < most_lingering && Clock::now() < end;) {
+        if (!await(POLLIN, patience / 10)) continue;
+        const ssize_t count = receive(sink.data(), sink.size());
+        if (count <= 0) return;
+        total += static_cast<std::size_t>(count);
+    }
+}
+
+}  // namespace hairbake
