@@ -72,7 +72,8 @@ HttpReply create(Service& service, HttpRequest& request) {
     const std::uint64_t bytes = length_header(request, "Upload-Length");
     const std::string metadata = request.header("Upload-Metadata").value_or("");
     const std::string digest = metadata_value(metadata, "sha256");
-    service.receive(bytes, digest);  // whether there is room
+    service.uploads().check(bytes, digest, request.caller);
+    service.receive(bytes, digest);  // whether there is room: what was used longest ago goes for it
     const UploadState state = service.uploads().create(bytes, digest, metadata, request.caller);
     return tus_reply(201)
         .with("Location", "/v1/uploads/" + state.id)

@@ -37,7 +37,7 @@ Service::Service(const Settings& settings)
       batches_(database_, queue_),
       catalog_(database_, store_, runner_),
       uploads_(database_, store_, settings.store / "uploads",
-               {settings.upload_lifetime_s, settings.blob_bytes, settings.open_uploads}) {
+               {settings.upload_lifetime_s, settings.blob_bytes, settings.budget_bytes, settings.open_uploads}) {
     const std::vector<std::string> lost = store_.recover();
     if (!lost.empty()) spdlog::warn("{} blobs were lost; what needs them is baked again", lost.size());
     uploads_.recover();

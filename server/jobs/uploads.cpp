@@ -86,19 +86,8 @@ void Uploads::expire() {
         }
 }
 
-/// Who sends at once may get a few more than allowed: it is no exact limit.
-void Uploads::check_count(const std::string& token) {
-    std::int64_t open = 0;
-    database_.read(
-        [&](Sql& sql) { open = sql.rows("SELECT count(*) FROM uploads WHERE token = ?", {token}).at(0).integer(0); });
-    if (open >= limits_.most_open)
-        throw Refusal(Refused::too_many, "there are " + std::to_string(open) +
-                                             " unfinished uploads of this token; allowed are " +
-                                             std::to_string(limits_.most_open) + ": finish some or delete them");
-}
-
-UploadState Uploads::create(std::uint64_t bytes, const std::string& sha256, const std::string& metadata,
-                            const std::string& token) {
+/// Who sends at once may get a few more than allowed: these are no exact limits.
+void Uploads::check(std::uint64_t bytes, const std::string& sha256, const std::string& token) {
     if (bytes > limits_.most_bytes)
         throw Refusal(Refused::too_large, "Upload-Length is " + std::to_string(bytes) + "; allowed is up to " +
                                               std::to_string(limits_.most_bytes) + " bytes");
@@ -106,7 +95,32 @@ UploadState Uploads::create(std::uint64_t bytes, const std::string& sha256, cons
         throw Refusal(Refused::malformed,
                       "Upload-Metadata lacks sha256: the digest of the whole file as 64 hexadecimal digits",
                       "Upload-Metadata");
-    check_count(token);
+    std::int64_t open = 0;
+    std::uint64_t own = 0, all = 0;
+    database_.read([&](Sql& sql) {
+        const auto mine = sql.rows("SELECT count(*), sum(bytes) FROM uploads WHERE token = ?", {token}).at(0);
+        open = mine.integer(0);
+        own = static_cast<std::uint64_t>(mine.integer(1));
+        all = static_cast<std::uint64_t>(sql.rows("SELECT sum(bytes) FROM uploads").at(0).integer(0));
+    });
+    const auto refuse = [](Refused why, const std::string& found, std::uint64_t allowed, const std::string& unit) {
+        throw Refusal(why, found + "; allowed are " + std::to_string(allowed) + unit + ": finish some or delete them");
+    };
+    if (open >= limits_.most_open)
+        refuse(Refused::too_many, "there are " + std::to_string(open) + " unfinished uploads of this token",
+               static_cast<std::uint64_t>(limits_.most_open), "");
+    const std::uint64_t share = limits_.budget / 2;  // so that nobody can keep all others out
+    if (open > 0 && own + bytes > share)
+        refuse(Refused::too_many, "with this one, unfinished uploads of this token have " + std::to_string(own + bytes),
+               share, " bytes, half of the store's budget");
+    if (all + bytes > limits_.budget)
+        refuse(Refused::full, "with this one, unfinished uploads have " + std::to_string(all + bytes), limits_.budget,
+               " bytes, the store's budget");
+}
+
+UploadState Uploads::create(std::uint64_t bytes, const std::string& sha256, const std::string& metadata,
+                            const std::string& token) {
+    check(bytes, sha256, token);
     UploadState state{random_name(), metadata, bytes, 0, now() + limits_.lifetime_s};
     const Descriptor file(::open((folder_ / state.id).c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0640));
     if (!file) throw_store_error(folder_ / state.id, errno);

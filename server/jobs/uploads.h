@@ -29,6 +29,7 @@ public:
     struct Limits {
         double lifetime_s = 0;         ///< of an upload that does not grow
         std::uint64_t most_bytes = 0;  ///< of one upload
+        std::uint64_t budget = 0;      ///< of all unfinished uploads together, as announced
         int most_open = 0;             ///< unfinished uploads of one token
     };
     Uploads(Database& database, BlobStore& store, std::filesystem::path folder, const Limits& limits);
@@ -38,8 +39,10 @@ public:
     /// Removes what has expired.
     void expire();
 
-    /// `sha256` is what the whole file must have; `token` names who sends it. Throws Refusal, (too_many) when that
-    /// token has too many unfinished uploads.
+    /// Throws Refusal when create() would: (too_many) when that token has too many unfinished uploads, or with others of
+    /// its own would announce more than half of the budget, (full) when all of them together would pass the budget.
+    void check(std::uint64_t bytes, const std::string& sha256, const std::string& token);
+    /// `sha256` is what the whole file must have; `token` names who sends it. Throws Refusal as check() does.
     UploadState create(std::uint64_t bytes, const std::string& sha256, const std::string& metadata,
                        const std::string& token);
     UploadState get(const std::string& id);
@@ -57,7 +60,6 @@ public:
 private:
     struct Busy;
     std::uint64_t size_on_disk(const std::string& id) const;
-    void check_count(const std::string& token);
     Appended complete(const std::string& id);
     void complete_whole_ones();
 

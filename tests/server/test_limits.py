@@ -112,6 +112,16 @@ class Connections(unittest.TestCase):
                 s.close()
             self.assertEqual(d.ask("GET", "/healthz").status, 200)
 
+    def test_the_reply_to_a_head_that_is_not_understood_is_not_lost_in_a_reset(self):
+        with Daemon() as d:
+            for head in (b"FOO / HTTP/1.1\r\nX-Long: " + b"a" * 7000, b"GET / HTTP/1.1\r\nHost: localhost\r\nCookie: " + b"a" * 30000):
+                with d.connect() as s:
+                    s.sendall(head + b"\r\n\r\n")
+                    reply = b""
+                    while piece := s.recv(65536):  # a reset would raise
+                        reply += piece
+                    self.assertTrue(reply.startswith(b"HTTP/1.1 400 "), reply)
+
     def test_one_token_has_so_many_unfinished_uploads(self):
         with Daemon(config="open_uploads = 2") as d:
             def create():
@@ -122,6 +132,36 @@ class Connections(unittest.TestCase):
             self.assertEqual((third.json["type"], third.headers["Retry-After"]), ("urn:hairbake:problem:too-many", "60"))
             d.ask("DELETE", first.headers["Location"], headers={"Tus-Resumable": "1.0.0"})
             self.assertEqual(create().status, 201)
+
+    def test_unfinished_uploads_together_may_not_pass_the_budget(self):
+        tokens = "".join(f'[[token]]\nname = "{name}"\nsha256 = "{sha256(name.encode())}"\nscopes = ["upload"]\n' for name in "ab")
+        with Daemon(config="budget_mb = 1\nblob_mb = 1", tokens=tokens) as d:  # 1,048,576 bytes
+            def ask(method, path, token, **more):
+                return d.ask(method, path, headers={"Tus-Resumable": "1.0.0", "Authorization": f"Bearer {token}", **more})
+
+            def create(token, size):
+                return ask("POST", "/v1/uploads", token, **{"Upload-Length": str(size),
+                                                            "Upload-Metadata": f"sha256 {base64_text(sha256(b'hello'))}"})
+            first = create("a", 600_000)  # a large one goes, alone
+            self.assertEqual(first.status, 201)
+            own = create("a", 1)
+            self.assertEqual((own.status, own.json["type"]), (429, "urn:hairbake:problem:too-many"))
+            self.assertIn("of this token have 600001; allowed are 524288 bytes", own.json["detail"])
+            self.assertEqual([create("b", 448_577).status, create("b", 448_576).status], [507, 201])
+            self.assertEqual(ask("DELETE", first.headers["Location"], "a").status, 204)
+            self.assertEqual([create("a", 300_000).status, create("a", 224_288).status, create("a", 1).status], [201, 201, 429])
+
+    def test_an_upload_that_is_refused_costs_no_result(self):
+        with Daemon(config="budget_mb = 1\nblob_mb = 1\nopen_uploads = 1") as d:
+            bake = d.ask("POST", "/v1/bakes", quick_request(d.put(hair_bytes()), d.put(hdr_bytes()))).json["id"]
+            self.assertEqual(d.wait(bake)["state"], "done")
+
+            def create(**metadata):
+                return d.ask("POST", "/v1/uploads", headers={"Tus-Resumable": "1.0.0", "Upload-Length": str(1 << 20), **metadata})
+            self.assertEqual(create().status, 400)  # it has no digest; with one, all results would go for it
+            self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}").json["state"], "done")
+            self.assertEqual(create(**{"Upload-Metadata": f"sha256 {base64_text(sha256(b'hello'))}"}).status, 201)
+            self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}").status, 404)
 
 
 class UnixSocket(unittest.TestCase):
