@@ -10,7 +10,9 @@ const not_served = new Set(['node_modules', 'package.json', 'package-lock.json',
 const vendor = {
     'three.js': 'three/build/three.module.min.js',
     'three.core.min.js': 'three/build/three.core.min.js', // three.js imports it by this name
-    'preact.js': 'htm/preact/standalone.module.js', // preact, its hooks and htm in one module
+    'preact_core.js': 'preact/dist/preact.module.js',
+    'preact_hooks.js': 'preact/hooks/dist/hooks.module.js',
+    'htm.js': 'htm/dist/htm.module.js',
     'tus.js': 'tus-js-client/dist/tus.min.js', // a plain script: window.tus
     'uplot.js': 'uplot/dist/uPlot.esm.js',
     'uplot.css': 'uplot/dist/uPlot.min.css',
@@ -18,6 +20,14 @@ const vendor = {
     // SHA-256 in pieces, and what it imports by these names
     ...Object.fromEntries(['sha2', '_md', '_u64', 'utils'].map(n => [`hashes/${n}.js`, `@noble/hashes/${n}.js`])),
 };
+
+// preact, its hooks and its templates as one module.
+const preact = `import { h } from './preact_core.js';
+import htm from './htm.js';
+export { createContext, render } from './preact_core.js';
+export { useCallback, useContext, useEffect, useMemo, useRef, useState } from './preact_hooks.js';
+export const html = htm.bind(h);
+`;
 
 function stage(folder) {
     rmSync(folder, { recursive: true, force: true });
@@ -27,10 +37,16 @@ function stage(folder) {
     for (const [name, from] of Object.entries(vendor))
         writeFileSync(
             join(folder, 'vendor', name),
-            without_map(readFileSync(join(source, 'node_modules', from), 'utf8')),
+            with_paths(without_map(readFileSync(join(source, 'node_modules', from), 'utf8'))),
         );
+    writeFileSync(join(folder, 'vendor/preact.js'), preact);
     const index = join(folder, 'index.html');
     if (existsSync(index)) writeFileSync(index, with_preloads(readFileSync(index, 'utf8'), folder));
+}
+
+// A browser does not know packages by name.
+function with_paths(text) {
+    return text.replace(/\bfrom\s*"preact"/g, 'from"./preact_core.js"');
 }
 
 // Source maps are not served.

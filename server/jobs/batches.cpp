@@ -1,5 +1,6 @@
 #include "server/jobs/batches.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -101,9 +102,12 @@ BakePlan plan_again(Sql& sql, const SqlRow& old, const Json& body) {
     return plan;
 }
 
-/// Which stages are there and which must run.
+/// Which bakes and stages are there and which stages must run.
 Json forecast(Sql& sql, const std::vector<BakePlan>& plans) {
     std::set<std::string> seen;
+    const auto done = std::count_if(plans.begin(), plans.end(), [&](const BakePlan& plan) {
+        return !sql.rows("SELECT 1 FROM bakes WHERE id = ? AND state = 'done'", {plan.id}).empty();
+    });
     Json reused{{"transmittance", 0}, {"irradiance", 0}}, computed = reused;
     for (const BakePlan& plan : plans)
         for (const StagePlan* stage : plan.stages())
@@ -111,7 +115,7 @@ Json forecast(Sql& sql, const std::vector<BakePlan>& plans) {
                 Json& count = is_stored(sql, *stage) ? reused[stage->kind] : computed[stage->kind];
                 count = count.get<int>() + 1;
             }
-    return {{"bakes", plans.size()}, {"reused_stages", reused}, {"computed_stages", computed}};
+    return {{"bakes", plans.size()}, {"done_bakes", done}, {"reused_stages", reused}, {"computed_stages", computed}};
 }
 
 }  // namespace

@@ -156,7 +156,7 @@ class Rebakes(unittest.TestCase):
                 self.assertEqual(d.wait(bake["id"])["state"], "done")
             body = {"environment": f"sha256:{new}", "replaces": f"sha256:{old}"}
             dry = d.ask("POST", "/v1/rebakes?dry_run=1", body).json
-            self.assertEqual(dry, {"bakes": 5, "reused_stages": {"transmittance": 5, "irradiance": 0},
+            self.assertEqual(dry, {"bakes": 5, "done_bakes": 0, "reused_stages": {"transmittance": 5, "irradiance": 0},
                                    "computed_stages": {"transmittance": 0, "irradiance": 1}})
             self.assertEqual(d.ask("GET", f"/v1/bakes?environment={new}").json["bakes"], [])  # a dry run does nothing
             reply = d.ask("POST", "/v1/rebakes", body)
@@ -194,7 +194,7 @@ class Rebakes(unittest.TestCase):
             # The name may move on and be what the bakes get.
             d.ask("PUT", "/v1/names/environment/stage1/dusk", {"sha256": noon})
             body = {"environment": "name:stage1/dusk", "models": [f"sha256:{m}" for m in models]}
-            batch = self.rebake(d, body, reused=(3, 1), computed=(0, 0), members={(m, noon) for m in models})
+            batch = self.rebake(d, body, reused=(3, 1), computed=(0, 0), members={(m, noon) for m in models}, done=1)
             self.assertEqual([b["names"].get("environment") for b in batch], [{"path": "stage1/dusk", "version": 2}] * 3)
             for wrong, field in (({"name": "stage1/dawn"}, "name"), ({"models": [f"sha256:{new}"]}, "models"),
                                  ({"models": [f"sha256:{models[0]}"], "name": "stage1/dusk"}, None)):  # it is either
@@ -261,13 +261,13 @@ class Rebakes(unittest.TestCase):
         self.assertEqual(view["state"], "done", view)
         return view
 
-    def rebake(self, d, body, reused, computed, members):
+    def rebake(self, d, body, reused, computed, members, done=0):
         """The batch's bakes, once done. `reused` and `computed` count transmittance and irradiance stages; `members` are pairs of
-        model and environment."""
+        model and environment; `done` of them are there before."""
         kinds = ("transmittance", "irradiance")
         dry = d.ask("POST", "/v1/rebakes?dry_run=1", body)
         self.assertEqual(dry.status, 200, dry.body)
-        self.assertEqual(dry.json, {"bakes": len(members), "reused_stages": dict(zip(kinds, reused)),
+        self.assertEqual(dry.json, {"bakes": len(members), "done_bakes": done, "reused_stages": dict(zip(kinds, reused)),
                                     "computed_stages": dict(zip(kinds, computed))})
         reply = d.ask("POST", "/v1/rebakes", body)
         self.assertEqual((reply.status, reply.json["bakes"]), (202, len(members)), reply.body)
@@ -276,6 +276,8 @@ class Rebakes(unittest.TestCase):
         batch = d.ask("GET", reply.json["links"]["bakes"]).json["bakes"]
         self.assertEqual({(bake["model"], bake["environment"]) for bake in batch}, members)
         self.assertEqual([d.wait(bake["id"])["state"] for bake in batch], ["done"] * len(members))
+        again = d.ask("POST", "/v1/rebakes?dry_run=1", body).json
+        self.assertEqual((again["done_bakes"], again["computed_stages"]), (len(members), dict(zip(kinds, (0, 0)))))
         return batch
 
 
@@ -293,7 +295,7 @@ class ManyRebakes(unittest.TestCase):
                 self.wait_until(d, lambda: not d.ask("GET", f"/v1/bakes?state={state}&limit=1").json["bakes"])
             body = {"environment": f"sha256:{new}", "replaces": f"sha256:{old}"}
             dry = d.ask("POST", "/v1/rebakes?dry_run=1", body).json
-            self.assertEqual(dry, {"bakes": self.GROOMS, "reused_stages": {"transmittance": self.GROOMS, "irradiance": 0},
+            self.assertEqual(dry, {"bakes": self.GROOMS, "done_bakes": 0, "reused_stages": {"transmittance": self.GROOMS, "irradiance": 0},
                                    "computed_stages": {"transmittance": 0, "irradiance": 1}})
             reply = d.ask("POST", "/v1/rebakes", body)
             batch = reply.headers["Location"]

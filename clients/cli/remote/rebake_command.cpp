@@ -57,7 +57,8 @@ void tell(const RebakeOptions& options, const Json& answer) {
     }
     const std::string bakes = std::to_string(answer.at("bakes").get<std::int64_t>()) + " bakes";
     if (options.dry_run)
-        print_line(bakes + ": " + count_words(answer.at("reused_stages")) + " are stored, " +
+        print_line(bakes + ", " + std::to_string(answer.at("done_bakes").get<std::int64_t>()) +
+                   " of them done: " + count_words(answer.at("reused_stages")) + " are stored, " +
                    count_words(answer.at("computed_stages")) + " would be computed");
     else if (options.wait)
         say_note("batch " + id_in(answer, "id") + " of " + bakes);

@@ -212,7 +212,7 @@ class Client:
                         replaces: Optional[PathLike] = None, name: Optional[str] = None,
                         models: Optional[Sequence[PathLike]] = None,
                         irradiance: Optional[Mapping[str, Any]] = None) -> Json:
-        """What rebake() would do: {"bakes": n, "reused_stages": {...}, "computed_stages": {...}}."""
+        """What rebake() would do: {"bakes": n, "done_bakes": n, "reused_stages": {...}, "computed_stages": {...}}."""
         return self._rebake("?dry_run=1", environment, bakes, replaces, name, models, irradiance, 0)
 
     def batch(self, batch: Union[Batch, str]) -> Batch:

@@ -2,12 +2,12 @@
 import { html, useMemo, useState } from '../vendor/preact.js';
 import { use_app, use_list } from './hooks.js';
 import { fact_rows, label_of, names_by_digest, summary, warnings } from './input_facts.js';
-import { Facts, Loading, ProblemNote, Warnings } from './parts.js';
+import { Cut, Facts, Loading, ProblemNote, Warnings } from './parts.js';
 import { file_names } from './uploads/uploads.js';
 import { UploadPanel } from './uploads/upload_panel.js';
 import { name_from_file } from './words.js';
 
-/** { items, names: { sha256: [path] }, files: { sha256: file name }, problem, reload } */
+/** { items, more, names: { sha256: [path] }, files: { sha256: file name }, problem, reload } */
 export function use_inputs(kind) {
     const list = use_list(`/v1/${kind}s`, `${kind}s`);
     const named = use_list(`/v1/names/${kind}`, 'names');
@@ -17,7 +17,7 @@ export function use_inputs(kind) {
     };
     const names = useMemo(() => names_by_digest(named.items ?? []), [named.items]);
     const files = useMemo(file_names, [list.items]);
-    return { items: list.items, names, files, problem: list.problem ?? named.problem, reload };
+    return { items: list.items, more: list.more || named.more, names, files, problem: list.problem ?? named.problem, reload };
 }
 
 /** Points a name at a file: entry is { kind, id } with the file's digest as id. */
@@ -98,7 +98,7 @@ function Card({ entry, index, label, paths, files, on_change }) {
 }
 
 export function Gallery({ kind, label, accept, empty }) {
-    const { items, names, files, problem, reload } = use_inputs(kind);
+    const { items, more, names, files, problem, reload } = use_inputs(kind);
     return html`<div>
         <${UploadPanel} kind=${kind} label=${label} accept=${accept} on_stored=${reload} />
         <${ProblemNote} problem=${problem} />
@@ -115,5 +115,6 @@ export function Gallery({ kind, label, accept, empty }) {
                 paths=${names[entry.id]} files=${files} on_change=${reload} />`,
             )}
         </div>
+        <${Cut} more=${more} />
     </div>`;
 }

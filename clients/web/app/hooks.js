@@ -1,5 +1,6 @@
 // What most pages need: the app's services, a document fetched once, one watched, a list with pages.
 import { createContext, useCallback, useContext, useEffect, useState } from '../vendor/preact.js';
+import { most_shown } from './words.js';
 
 /** { api, uploads, announce(text) } */
 export const AppContext = createContext(null);
@@ -37,27 +38,26 @@ export function use_watch(path, every_ms, ended = () => false, round = 0) {
     return state;
 }
 
-/** Every item of a list that comes in pages, or as many as are worth showing, asked for once. */
-export async function all_pages(api, path, key, most = 1000) {
+/** { items, more } of a list that comes in pages: all of them, or as many as are worth showing and that there are more. */
+async function all_pages(api, path, key, most) {
     const items = [];
-    for (let cursor = ''; items.length < most;) {
+    for (let cursor = '';;) {
         const page = await api.json(path + (path.includes('?') ? '&' : '?') + `limit=200${cursor}`);
         items.push(...page[key]);
-        if (!page.next) break;
+        if (!page.next || items.length >= most) return { items, more: Boolean(page.next) };
         cursor = `&cursor=${encodeURIComponent(page.next)}`;
     }
-    return items;
 }
 
-/** { items, problem, reload } of all pages of a list; `most` as for all_pages. */
-export function use_list(path, key, most = undefined) {
+/** { items, more, problem, reload } of a list that comes in pages: up to `most` items, and whether there are more. */
+export function use_list(path, key, most = most_shown) {
     const { api } = use_app();
     const [state, set_state] = useState({ items: null });
     const [round, set_round] = useState(0);
     useEffect(() => {
         let live = true;
         all_pages(api, path, key, most).then(
-            items => live && set_state({ items }),
+            list => live && set_state(list),
             problem => live && set_state({ items: [], problem }),
         );
         return () => (live = false);

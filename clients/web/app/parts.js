@@ -1,5 +1,6 @@
 // Small pieces of pages.
 import { html } from '../vendor/preact.js';
+import { most_shown } from './words.js';
 
 /** A failure, read out at once. */
 export function ProblemNote({ problem }) {
@@ -8,6 +9,12 @@ export function ProblemNote({ problem }) {
 
 export function Loading({ what }) {
     return html`<p aria-busy="true">Loading ${what}</p>`;
+}
+
+/** Under a list that was too long to show. */
+export function Cut({ more }) {
+    return more ? html`<p class="cut">Only the first ${most_shown.toLocaleString('en')} are shown; the service's API
+        lists all.</p>` : null;
 }
 
 /** rows: [term, text or node] */

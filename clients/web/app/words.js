@@ -1,5 +1,7 @@
 // Numbers, times and digests as people read them.
 
+export const most_shown = 1000; // items of a list: more take long to draw, and nobody reads them
+
 export function bytes_words(bytes) {
     if (bytes < 1000) return `${bytes} bytes`;
     const units = ['kB', 'MB', 'GB', 'TB'];

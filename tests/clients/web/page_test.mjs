@@ -211,6 +211,12 @@ test('a name gets a new version, shows what followed the old one, and that is ba
         await page.getByText('All 1 have ended.').waitFor();
         const { bakes } = await daemon.json('/v1/bakes?name=stage%2Fsunset');
         assert.equal(bakes[0].environment, studio);
+        await check_with_axe(page, 'batch');
+        // The older bake is still there; that it was baked again is told.
+        await page.goto(`${daemon.address}/#/names/environment/stage/sunset`);
+        await page.getByText('2 bakes asked for this name, 1 of them for an older version.').waitFor();
+        await page.getByRole('button', { name: 'Show 1 bake' }).waitFor();
+        assert.match(await page.locator('#forecast').innerText(), /Done already\s+1/);
     });
 });
 
@@ -258,11 +264,15 @@ test('a bake that fails says why, and another can be cancelled from the queue', 
         await page.goto(`${daemon.address}/#/bakes/${failing.id}`);
         await page.getByRole('heading', { name: 'Why it failed' }).waitFor();
         assert.match(await page.locator('[role=alert] p').innerText(), /sha256:[0-9a-f]{64}/);
+        await check_with_axe(page, 'failed bake');
         // Traced with the most directions: some minutes of work.
-        await daemon.post('/v1/bakes', {
+        const slow = await daemon.post('/v1/bakes', {
             hair: `sha256:${groom}`,
             transmittance: { method: 'trace', directions: 4096, direction_set: 'random' },
         });
+        await page.goto(`${daemon.address}/#/bakes/${slow.id}`);
+        await page.locator('progress').waitFor();
+        await check_with_axe(page, 'running bake');
         await page.goto(`${daemon.address}/#/bakes`);
         await page.getByRole('button', { name: /^Cancel/ }).click();
         await page.locator('.state-cancelled').waitFor();

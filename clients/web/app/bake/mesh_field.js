@@ -1,12 +1,13 @@
 // A mesh of the request: one that has a name in the service, or an OBJ file that is sent now.
 import { html, useEffect, useState } from '../../vendor/preact.js';
 import { use_app, use_list } from '../hooks.js';
+import { Cut } from '../parts.js';
 import { short_digest, title_words } from '../words.js';
 
 /** value: 'sha256:...', 'name:...' or null; on_wait(words): why a picked file is not the value yet, null once it is. */
 export function MeshField({ name, schema, value, on_change, on_wait, fault }) {
     const { uploads } = use_app();
-    const { items } = use_list('/v1/names/mesh', 'names');
+    const { items, more } = use_list('/v1/names/mesh', 'names');
     const [, redraw] = useState(0);
     const [file, set_file] = useState(null);
     useEffect(() => uploads.listen(() => redraw(n => n + 1)), []);
@@ -58,6 +59,7 @@ export function MeshField({ name, schema, value, on_change, on_wait, fault }) {
             <button type="button" class="small secondary outline" onClick=${drop}
                 aria-label=${`Cancel: ${job.file.name}`}>Cancel</button></p>`}
         <small id=${`${id}-help`}>${schema.description}</small>
+        <${Cut} more=${more} />
         ${fault && html`<small class="problem" id=${`${id}-fault`}>${fault}</small>`}
     </div>`;
 }

@@ -1,10 +1,11 @@
 // Choosing one of the stored models or environments, by picture.
 import { html } from '../../vendor/preact.js';
 import { label_of, summary } from '../input_facts.js';
+import { Cut } from '../parts.js';
 
 /** value: a digest or ''; inputs: what use_inputs gives; fault: the id of the words that say what is wrong, if any. */
 export function Picker({ kind, title, inputs, value, on_change, none, fault }) {
-    const { items, names, files } = inputs;
+    const { items, more, names, files } = inputs;
     const name = `picker-${title}`;
     const choose = id => () => on_change(id);
     return html`<fieldset role="radiogroup" aria-invalid=${fault ? 'true' : null} aria-describedby=${fault}>
@@ -22,6 +23,7 @@ export function Picker({ kind, title, inputs, value, on_change, none, fault }) {
             </label>`,
             )}
         </div>
+        <${Cut} more=${more} />
     </fieldset>`;
 }
 

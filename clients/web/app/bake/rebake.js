@@ -10,12 +10,18 @@ const stage_line = ({ transmittance, irradiance }) =>
         count_words(irradiance, 'set of irradiance maps', 'sets of irradiance maps'),
     ].join(', ');
 
-const forecast_words = ({ bakes, reused_stages, computed_stages }) =>
-    `${count_words(bakes, 'bake')}: reused are ${stage_line(reused_stages)}; computed ${stage_line(computed_stages)}.`;
+const is_done = ({ bakes, done_bakes }) => bakes === done_bakes;
+
+const forecast_words = forecast =>
+    `${count_words(forecast.bakes, 'bake')}: ` +
+    (is_done(forecast)
+        ? 'all of them are done already.'
+        : `reused are ${stage_line(forecast.reused_stages)}; computed ${stage_line(forecast.computed_stages)}.`);
 
 function Forecast({ forecast }) {
     return html`<dl class="facts" id="forecast">
         <div><dt>Bakes</dt><dd>${forecast.bakes}</dd></div>
+        <div><dt>Done already</dt><dd>${forecast.done_bakes}</dd></div>
         <div><dt>Reused</dt><dd>${stage_line(forecast.reused_stages)}</dd></div>
         <div><dt>Computed</dt><dd>${stage_line(forecast.computed_stages)}</dd></div>
     </dl>`;
@@ -53,8 +59,10 @@ export function Rebake({ request, label = 'Re-bake' }) {
     return html`<section aria-label="What it takes">
         <${ProblemNote} problem=${state.problem} />
         ${!state.forecast && !state.problem && html`<p aria-busy="true">Counting what is reused</p>`}
-        ${state.forecast && html`<${Forecast} forecast=${state.forecast} /><button onClick=${confirm}
-            disabled=${state.busy} aria-busy=${state.busy ? 'true' : null}>
-            ${label} ${count_words(state.forecast.bakes, 'bake')}</button>`}
+        ${
+            state.forecast &&
+            html`<${Forecast} forecast=${state.forecast} /><button onClick=${confirm} disabled=${state.busy} aria-busy=${state.busy ? 'true' : null}>
+                ${is_done(state.forecast) ? 'Show' : label} ${count_words(state.forecast.bakes, 'bake')}</button>`
+        }
     </section>`;
 }

@@ -3,8 +3,8 @@ import { html, useState } from '../../vendor/preact.js';
 import { BakeTable } from '../bake/bake_table.js';
 import { use_inputs } from '../gallery.js';
 import { use_watch } from '../hooks.js';
-import { Loading, ProblemNote } from '../parts.js';
-import { count_words } from '../words.js';
+import { Cut, Loading, ProblemNote } from '../parts.js';
+import { count_words, most_shown } from '../words.js';
 
 const states = ['queued', 'running', 'done', 'failed', 'cancelled'];
 const page_size = 50;
@@ -48,7 +48,8 @@ export default function BakesPage() {
                 on_choose=${choose}
             on_change=${() => set_round(n => n + 1)} />`
         }
-        ${value?.next && limit < 1000 && html`<button class="small outline"
-            onClick=${() => set_limit(Math.min(1000, limit + 150))}>Show more</button>`}
+        ${value?.next && limit < most_shown && html`<button class="small outline"
+            onClick=${() => set_limit(Math.min(most_shown, limit + 150))}>Show more</button>`}
+        <${Cut} more=${value?.next && limit === most_shown} />
     </div>`;
 }

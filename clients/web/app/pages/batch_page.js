@@ -3,7 +3,8 @@ import { html, useEffect } from '../../vendor/preact.js';
 import { BakeTable } from '../bake/bake_table.js';
 import { use_inputs } from '../gallery.js';
 import { use_app, use_watch } from '../hooks.js';
-import { Facts, Loading, ProblemNote } from '../parts.js';
+import { Cut, Facts, Loading, ProblemNote } from '../parts.js';
+import { most_shown } from '../words.js';
 
 const open = ({ states }) => states.queued + states.running;
 const has_ended = batch => open(batch) === 0;
@@ -17,7 +18,7 @@ export default function BatchPage({ path }) {
     const left = batch ? open(batch) : -1;
     // The list is asked for until nothing is open, so that its last state is the last one.
     const { value: list } = use_watch(
-        `/v1/bakes?batch=${encodeURIComponent(path[1] ?? '')}&limit=1000`,
+        `/v1/bakes?batch=${encodeURIComponent(path[1] ?? '')}&limit=${most_shown}`,
         1000,
         ({ bakes }) => bakes.every(({ state }) => state !== 'queued' && state !== 'running'),
     );
@@ -34,5 +35,6 @@ export default function BatchPage({ path }) {
         <${Facts} rows=${Object.entries(batch.states).filter(([, count]) => count > 0)} />
         <h2>Bakes</h2>
         ${list && html`<${BakeTable} bakes=${list.bakes} models=${models} environments=${environments} />`}
+        <${Cut} more=${list?.next} />
     </div>`;
 }

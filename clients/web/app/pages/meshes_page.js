@@ -4,7 +4,7 @@ import { html, useState } from '../../vendor/preact.js';
 import { NameForm } from '../gallery.js';
 import { use_app, use_list } from '../hooks.js';
 import { label_of } from '../input_facts.js';
-import { Heads, Loading, ProblemNote } from '../parts.js';
+import { Cut, Heads, Loading, ProblemNote } from '../parts.js';
 import { UploadPanel } from '../uploads/upload_panel.js';
 import { file_names } from '../uploads/uploads.js';
 import { name_from_file, time_words } from '../words.js';
@@ -35,7 +35,7 @@ function Named({ names }) {
 }
 
 export default function MeshesPage() {
-    const { items, problem, reload } = use_list('/v1/names/mesh', 'names');
+    const { items, more, problem, reload } = use_list('/v1/names/mesh', 'names');
     const [, redraw] = useState(0);
     const named = new Set((items ?? []).map(({ sha256 }) => sha256));
     return html`<div>
@@ -49,5 +49,6 @@ export default function MeshesPage() {
         <h2>Named meshes</h2>
         ${items?.length === 0 && html`<p>No mesh has a name yet.</p>`}
         ${items?.length > 0 && html`<${Named} names=${items} />`}
+        <${Cut} more=${more} />
     </div>`;
 }

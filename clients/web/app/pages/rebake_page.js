@@ -5,7 +5,7 @@ import { Rebake } from '../bake/rebake.js';
 import { use_inputs } from '../gallery.js';
 import { use_list } from '../hooks.js';
 import { label_of } from '../input_facts.js';
-import { ProblemNote } from '../parts.js';
+import { Cut, ProblemNote } from '../parts.js';
 import { count_words } from '../words.js';
 
 function OldEnvironment({ inputs, value, on_change }) {
@@ -13,16 +13,16 @@ function OldEnvironment({ inputs, value, on_change }) {
         <option value="">choose</option>
         ${(inputs.items ?? []).map(({ id }) => html`<option key=${id} value=${id} selected=${id === value}>
             ${label_of(id, inputs.names, inputs.files)}</option>`)}
-    </select></label>`;
+    </select></label><${Cut} more=${inputs.more} />`;
 }
 
 function OldName({ value, on_change }) {
-    const { items } = use_list('/v1/names/environment', 'names');
+    const { items, more } = use_list('/v1/names/environment', 'names');
     return html`<label>Name <select onChange=${event => on_change(event.target.value)}>
         <option value="">choose</option>
         ${(items ?? []).map(({ path }) => html`<option key=${path} value=${path} selected=${path === value}>${path}
             </option>`)}
-    </select></label>`;
+    </select></label><${Cut} more=${more} />`;
 }
 
 /** The part of the request that says which bakes, or null. */
