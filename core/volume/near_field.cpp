@@ -89,7 +89,7 @@ float select(const Neighborhood& near, std::size_t begin, std::size_t end, const
                    tz = hn::LoadU(d, &near.axis_z[i]);
         const auto foot = hn::MulAdd(cx, tx, hn::MulAdd(cy, ty, hn::Mul(cz, tz)));
         const auto centre2 = hn::MulAdd(cx, cx, hn::MulAdd(cy, cy, hn::Mul(cz, cz)));
-        const auto weight = hn::LoadU(d, &near.weight[i]), least = hn::Mul(hn::Set(d, 0.5f), weight);
+        const auto weight = hn::LoadU(d, &near.weight[i]), least = hn::LoadU(d, &near.least[i]);
         const auto distance2 = hn::Max(hn::NegMulAdd(foot, foot, centre2), hn::Mul(least, least));
         const auto half_length = hn::LoadU(d, &near.half_length[i]);
         const auto beyond = hn::Max(hn::Zero(d), hn::Sub(hn::Abs(foot), half_length));
@@ -224,7 +224,7 @@ std::vector<float> correct_near_field(const StrandGeometry& strands, const GridF
         for (std::size_t b = begin; b < end; ++b) {
             const std::size_t first = sorted.vertex_begin[b], last = sorted.vertex_begin[b + 1];
             if (first == last) continue;
-            near.collect(frame, sorted, bricks, b);
+            near.collect(frame, sorted, bricks, b, strands.opacities);
             for (std::size_t at = first; at < last; at += 1024) {  // a brick may hold the whole model
                 progress.check();
                 HWY_DYNAMIC_DISPATCH(correct_vertices)

@@ -25,7 +25,7 @@ struct AngularMean {
 ///
 /// F is the mean over directions, weighted with T(l) / A, of the optical depth within the window q(d) = (1 - d^2 /
 /// r^2)^2, r = 0.5 voxels: F_exact of the strand pieces (in closed form along each piece; the vertex's adjacent
-/// segments left out; never nearer than half of opacity * width), F_grid of the voxels. `own` takes out what the
+/// segments left out; never nearer than half of the width), F_grid of the voxels. `own` takes out what the
 /// vertex's own strand adds to the grid beyond the window: half of it at a strand's end, nothing at a lone point.
 /// Design, "What a spike measured"; the closed form and the smaller window are ours.
 std::vector<float> correct_near_field(const StrandGeometry& strands, const GridFrame& frame,

@@ -19,11 +19,11 @@ bool is_halved(const StrandPiece& piece) { return dot(piece.step, piece.step) > 
 }  // namespace
 
 void Neighborhood::collect(const GridFrame& frame, const SortedStrands& sorted, const ExtinctionBricks& bricks,
-                           std::size_t brick) {
+                           std::size_t brick, std::span<const float> opacities) {
     const std::array<int, 3> place = frame.brick_coordinates(sorted.bricks[brick]);
     corner = Vec3f(float(8 * place[0] - 1), float(8 * place[1] - 1), float(8 * place[2] - 1));
     find_places(frame, sorted, place);
-    collect_pieces(sorted);
+    collect_pieces(sorted, opacities);
     collect_tensors(bricks);
 }
 
@@ -60,7 +60,7 @@ void Neighborhood::for_each_half(const StrandPiece& piece, const Visit& visit) c
 }
 
 /// Sorts by counting: once over the pieces for the cells' sizes, once to store.
-void Neighborhood::collect_pieces(const SortedStrands& sorted) {
+void Neighborhood::collect_pieces(const SortedStrands& sorted, std::span<const float> opacities) {
     begin.fill(0);
     for (const Place& place : places_)
         for (const StrandPiece& piece : sorted.pieces_in(place.slot, place.voxel))
@@ -73,8 +73,10 @@ void Neighborhood::collect_pieces(const SortedStrands& sorted) {
             const float step_length = length(piece.step);
             const Vec3f axis = piece.step / step_length;
             const float half = step_length * (is_halved(piece) ? 0.25f : 0.5f);
-            for_each_half(
-                piece, [&](const Vec3f& local, std::size_t cell) { store(piece, local, axis, half, begin[cell]++); });
+            const float opacity = 0.5f * (opacities[piece.segment] + opacities[piece.segment + 1]);
+            for_each_half(piece, [&](const Vec3f& local, std::size_t cell) {
+                store(piece, local, axis, half, opacity, begin[cell]++);
+            });
         }
     std::copy_backward(begin.begin(), begin.end() - 1, begin.end());
     begin[0] = 0;
@@ -83,12 +85,12 @@ void Neighborhood::collect_pieces(const SortedStrands& sorted) {
 void Neighborhood::reserve(std::size_t count) {
     const std::size_t size = count + kVectorPadding;
     if (segment.size() >= size) return;
-    for (auto* array : {&centre_x, &centre_y, &centre_z, &axis_x, &axis_y, &axis_z, &half_length, &weight})
+    for (auto* array : {&centre_x, &centre_y, &centre_z, &axis_x, &axis_y, &axis_z, &half_length, &weight, &least})
         array->resize(size + size / 2);
     segment.resize(size + size / 2);
 }
 
-void Neighborhood::store(const StrandPiece& piece, const Vec3f& local, const Vec3f& axis, float half,
+void Neighborhood::store(const StrandPiece& piece, const Vec3f& local, const Vec3f& axis, float half, float opacity,
                          std::uint32_t at) {
     centre_x[at] = local.x;
     centre_y[at] = local.y;
@@ -98,6 +100,7 @@ void Neighborhood::store(const StrandPiece& piece, const Vec3f& local, const Vec
     axis_z[at] = axis.z;
     half_length[at] = half;
     weight[at] = piece.weight;
+    least[at] = 0.5f * piece.weight / opacity;
     segment[at] = static_cast<std::int32_t>(piece.segment);
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/base/vec.h"
@@ -30,6 +31,7 @@ struct Neighborhood {
     std::vector<float> axis_x, axis_y, axis_z;        ///< unit
     std::vector<float> half_length;                   ///< voxels
     std::vector<float> weight;                        ///< opacity * width / h
+    std::vector<float> least;                         ///< half of width / h
     std::vector<std::int32_t> segment;
 
     /// Extinction tensors of ExtinctionBricks: [component][voxel], components as there, then the trace.
@@ -40,8 +42,9 @@ struct Neighborhood {
     /// Cell coordinate of a local coordinate.
     static int cell_of(float local) { return static_cast<int>(2 * local) - 1; }
 
-    void collect(const GridFrame& frame, const SortedStrands& sorted, const ExtinctionBricks& bricks,
-                 std::size_t brick);
+    /// `opacities` [V]: of the model's points.
+    void collect(const GridFrame& frame, const SortedStrands& sorted, const ExtinctionBricks& bricks, std::size_t brick,
+                 std::span<const float> opacities);
 
 private:
     struct Place {
@@ -49,12 +52,13 @@ private:
     };
 
     void find_places(const GridFrame& frame, const SortedStrands& sorted, const std::array<int, 3>& brick);
-    void collect_pieces(const SortedStrands& sorted);
+    void collect_pieces(const SortedStrands& sorted, std::span<const float> opacities);
     /// Calls visit(local position, cell) for the one or two halves of a piece that lie in this neighborhood.
     template <class Visit>
     void for_each_half(const StrandPiece& piece, const Visit& visit) const;
     void reserve(std::size_t count);
-    void store(const StrandPiece& piece, const Vec3f& local, const Vec3f& axis, float half, std::uint32_t at);
+    void store(const StrandPiece& piece, const Vec3f& local, const Vec3f& axis, float half, float opacity,
+               std::uint32_t at);
     void collect_tensors(const ExtinctionBricks& bricks);
 
     std::vector<Place> places_;  ///< voxels of the brick and its halo that hold something
