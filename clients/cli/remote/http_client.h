@@ -18,7 +18,7 @@ namespace hairbake {
 struct HttpAnswer {
     int status = 0;
     std::map<std::string, std::string> headers;  ///< names in lower case; the last of equal names
-    std::string body;
+    std::string body{};
 
     /// Empty when there is none.
     std::string header(const std::string& name) const;
@@ -26,14 +26,14 @@ struct HttpAnswer {
 
 struct HttpCall {
     std::string method = "GET";
-    std::string path;                  ///< from the root, with the query
-    std::vector<std::string> headers;  ///< "Name: value"
-    std::string body;
+    std::string path;                    ///< from the root, with the query
+    std::vector<std::string> headers{};  ///< "Name: value"
+    std::string body{};
     /// The body in pieces instead: fills the span and says how many bytes it filled. `source_bytes` in all.
-    std::function<std::size_t(std::span<std::byte>)> source;
+    std::function<std::size_t(std::span<std::byte>)> source{};
     std::uint64_t source_bytes = 0;
     /// Takes the body of a 2xx answer in pieces instead of HttpAnswer::body. What it throws ends the call.
-    std::function<void(const HttpAnswer& head, std::span<const std::byte>)> sink;
+    std::function<void(const HttpAnswer& head, std::span<const std::byte>)> sink{};
     std::uint64_t most_bytes = 16 << 20;  ///< a body that is longer is cut off and refused
 };
 
