@@ -16,6 +16,14 @@ namespace {
 
 constexpr int most_channels = 64;
 constexpr std::int64_t pixels_per_piece = 1 << 20;
+constexpr std::uintmax_t most_bytes_of_tiles = std::uintmax_t(512) << 20;  // in one row of them, decoded
+// The most decoded bytes that one byte of a PNG, TIFF or EXR can stand for, whatever the picture. Deflate reaches
+// 1032:1 (a match of 258 bytes in 2 bits). On top of it EXR's DWA keeps 2 + 2 bytes of an 8 x 8 block of floats (256
+// bytes) and 2 bytes of a run of 128: 64 * 1032:1. PNG's 1-bit palettes are decoded to 4 bytes: 32 * 1032:1, TIFF's
+// to 3. EXR's PXR24 reaches 4/3 * 1032:1, PIZ 410:1, RLE 64:1, B44A 32:3; TIFF's Zstandard 32768:1 (128 KiB in 4
+// bytes), LZMA 7100:1, LZW 1700:1 (each code one byte longer than the last), PackBits 64:1. Only TIFF's fax, JBIG, WebP
+// and LERC of one colour can exceed it. Measured on constant maps of 16384 x 8192: at most 33,200:1 (EXR, DWAB).
+constexpr std::uintmax_t best_ratio = 64 * 1032;
 
 struct Source {
     std::filesystem::path file;
@@ -52,12 +60,24 @@ void check_size(const Source& source, const OIIO::ImageSpec& spec, const std::st
         source.fail("the file has " + std::to_string(spec.nchannels) + " channels; allowed are 1 to 64");
     if (spec.depth > 1 || spec.deep) source.fail("the image is volumetric or deep; allowed is a flat image");
     // A run of HDR's encoding covers at most 127 bytes with 2; PFM is not compressed.
-    const std::uintmax_t bytes = std::filesystem::file_size(source.file);
-    const std::uintmax_t raw = std::uintmax_t(spec.width) * spec.height * (format == "pnm" ? 4 * spec.nchannels : 4);
-    const std::uintmax_t limit = format == "hdr" ? 64 * bytes : format == "pnm" ? bytes : raw;
+    const std::uintmax_t bytes = std::filesystem::file_size(source.file), pixels = spec.image_pixels();
+    const std::uintmax_t raw = format == "hdr"   ? 4 * pixels
+                               : format == "pnm" ? 4 * spec.nchannels * pixels
+                                                 : spec.image_bytes(true);
+    const std::uintmax_t limit = bytes * (format == "hdr" ? 64 : format == "pnm" ? 1 : best_ratio);
     if (raw > limit)
         source.fail("the header declares " + size + " pixels, but the file of " + std::to_string(bytes) +
                     " bytes cannot hold them");
+}
+
+// Tiles are decoded a row of them at a time, and whole even where they reach beyond the image.
+void check_tiles(const Source& source, const OIIO::ImageSpec& spec) {
+    if (spec.tile_width <= 0 || spec.tile_height <= 0) return;
+    const std::uintmax_t pixels = std::uintmax_t(std::max(spec.width, spec.tile_width)) * spec.tile_height;
+    if (pixels > most_bytes_of_tiles / (sizeof(float) * spec.nchannels))
+        source.fail("the tiles are " + std::to_string(spec.tile_width) + " x " + std::to_string(spec.tile_height) +
+                    " pixels of " + std::to_string(spec.nchannels) + " channels; allowed are " +
+                    std::to_string(most_bytes_of_tiles >> 20) + " MiB of floats in a row of tiles");
 }
 
 void check_placement(const Source& source, const OIIO::ImageSpec& spec) {
@@ -142,14 +162,16 @@ bool read_rows(const Source& source, const OIIO::ImageSpec& spec, int begin, int
                                         rows.data());
 }
 
+// The pixels are not touched before there is something to put there: a size that is only declared takes addresses, but
+// no memory.
 void read_pixels(const Source& source, const OIIO::ImageSpec& spec, ProgressRange range, Progress& progress,
                  ImageFile& image) {
     const std::array<int, 3> channels = choose_channels(spec, image);
     const int unit = spec.tile_height > 0 ? spec.tile_height : 16;
     const auto wanted = static_cast<int>(pixels_per_piece / spec.width);
     const int step = std::min(spec.height, std::max(wanted / unit, 1) * unit);
-    image.pixels.resize(std::size_t(spec.width) * spec.height);
     std::vector<float> rows(std::size_t(step) * spec.width * spec.nchannels);
+    image.pixels.reserve(std::size_t(spec.width) * spec.height);
     for (int begin = 0; begin < spec.height; begin += step) {
         progress.check();
         const int end = std::min(spec.height, begin + step);
@@ -157,6 +179,7 @@ void read_pixels(const Source& source, const OIIO::ImageSpec& spec, ProgressRang
         if (!read_rows(source, spec, begin, end, rows) || source.input->has_error())
             source.fail("rows " + std::to_string(begin) + " to " + std::to_string(end - 1) +
                         " cannot be decoded: " + source.input->geterror());
+        image.pixels.resize(std::size_t(end) * spec.width);
         Vec3f* pixel = image.pixels.data() + std::size_t(begin) * spec.width;
         const float* value = rows.data();
         for (std::size_t i = 0; i < std::size_t(end - begin) * spec.width; ++i, value += spec.nchannels)
@@ -178,6 +201,7 @@ ImageFile read_image_file(const std::filesystem::path& file, const SizeCheck& ch
     if (!source.input->open(file.string(), spec)) source.fail("not a readable image: " + source.input->geterror());
 
     check_size(source, spec, format, check);
+    check_tiles(source, spec);
     check_placement(source, spec);
     ImageFile image;
     image.width = spec.width;
