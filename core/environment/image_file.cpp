@@ -197,8 +197,10 @@ ImageFile read_image_file(const std::filesystem::path& file, const SizeCheck& ch
     const std::string format = sniff(source);
     source.input = OIIO::ImageInput::create(format);
     if (!source.input) throw Error(ErrorKind::internal, "OpenImageIO has no reader for " + format);
-    OIIO::ImageSpec spec;
-    if (!source.input->open(file.string(), spec)) source.fail("not a readable image: " + source.input->geterror());
+    OIIO::ImageSpec spec, config;
+    config.attribute("oiio:UnassociatedAlpha", 1);  // else PNG's and TIFF's colours would be multiplied by it
+    if (!source.input->open(file.string(), spec, config))
+        source.fail("not a readable image: " + source.input->geterror());
 
     check_size(source, spec, format, check);
     check_tiles(source, spec);

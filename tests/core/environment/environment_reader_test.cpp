@@ -137,6 +137,22 @@ TEST(EnvironmentReader, AlphaIsDroppedGreyIsSpreadAndChannelsAreFoundByName) {
     EXPECT_EQ(named.pixels[9], (Vec3f{map.pixels[9].y, map.pixels[9].x, map.pixels[9].z}));
 }
 
+TEST(EnvironmentReader, AnAlphaThatIsApartFromTheColoursLeavesThemAsTheyAre) {
+    const TemporaryFolder folder;
+    const EnvironmentMap map = make_map(16, [](const Vec3d& d) { return Vec3d{0.5 + 0.4 * d.x, 0.7, 1}; });
+    const auto apart = [](OIIO::ImageSpec& s) { s.attribute("oiio:UnassociatedAlpha", 1); };
+    const auto check = [&](const std::string& name, const OIIO::TypeDesc& type) {
+        write(folder / ("rgb_" + name), map, type);
+        write(folder / ("rgba_" + name), map, type, apart, 4);
+        // The alpha of 1/4 is dropped, so the same numbers are stored for the colours: no difference at all.
+        EXPECT_EQ(worst_difference(read(folder / ("rgb_" + name)), read(folder / ("rgba_" + name))), 0) << name;
+    };
+    check("eight.png", OIIO::TypeDesc::UINT8);
+    check("sixteen.png", OIIO::TypeDesc::UINT16);
+    check("eight.tif", OIIO::TypeDesc::UINT8);
+    check("float.tif", OIIO::TypeDesc::FLOAT);
+}
+
 TEST(EnvironmentReader, PrimariesAreNamed) {
     const TemporaryFolder folder;
     const EnvironmentMap map = noise_map(16, 4);
