@@ -10,7 +10,7 @@ namespace hairbake {
 /// Part of the stage keys: raised when a stage's algorithm changes its numbers, so that no stored result is mistaken
 /// for a new one.
 inline constexpr int transmittance_algorithm = 2;
-inline constexpr int irradiance_algorithm = 1;
+inline constexpr int irradiance_algorithm = 2;
 inline constexpr int output_format = 1;
 
 /// SHA-256 of the files that the transmittance stage reads; empty where there is none.
