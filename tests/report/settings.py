@@ -15,7 +15,7 @@ class Size:
     map_width: int = 1024
     pixels: int = 320
     samples: int = 4
-    light_samples: int = 8
+    light_samples: int = 64
     reference_vertices: int = 500
     full: bool = False  # also the published models
 
