@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <string>
 
 #include "core/base/error.h"
@@ -50,9 +51,15 @@ void find_bounds(StrandGeometry& geometry) {
     geometry.bounds_max = high;
 }
 
-void find_degenerate_segments(StrandGeometry& geometry) {
+/// Of the segments that have a length at all.
+struct SegmentCounts {
+    std::size_t with_length = 0, too_short = 0;
+};
+
+SegmentCounts find_degenerate_segments(StrandGeometry& geometry) {
     const Vec3f side = geometry.bounds_max - geometry.bounds_min;
     const double shortest = 1e-6 * std::max({side.x, side.y, side.z});
+    SegmentCounts counts;
     geometry.segments.assign(geometry.vertex_count(), Segment::none);
     for (std::size_t s = 0; s < geometry.strand_count(); ++s)
         for (std::uint32_t i = geometry.strand_begin[s]; i + 1 < geometry.strand_begin[s + 1]; ++i) {
@@ -61,7 +68,36 @@ void find_degenerate_segments(StrandGeometry& geometry) {
             geometry.segments[i] = solid ? Segment::solid : Segment::degenerate;
             ++geometry.segment_count;
             geometry.degenerate_segment_count += !solid;
+            counts.with_length += segment_length > 0;
+            counts.too_short += segment_length > 0 && !solid;
         }
+    return counts;
+}
+
+/// Axis by axis.
+Vec3f median_position(std::vector<Vec3f> positions) {
+    Vec3f median;
+    const auto middle = positions.begin() + static_cast<std::ptrdiff_t>(positions.size() / 2);
+    for (int axis = 0; axis < 3; ++axis) {
+        std::nth_element(positions.begin(), middle, positions.end(),
+                         [axis](const Vec3f& a, const Vec3f& b) { return a[axis] < b[axis]; });
+        median[axis] = (*middle)[axis];
+    }
+    return median;
+}
+
+/// One point far out makes the bounds so large that the strands themselves count as degenerate: A would be 1 without a
+/// word, and the traced reference would agree.
+[[noreturn]] void refuse_stray_point(const HairModel& model, const SegmentCounts& counts) {
+    const Vec3d median(median_position(model.positions));
+    const auto distance = [&](const Vec3f& p) { return length(Vec3d(p) - median); };
+    const auto farthest = std::max_element(model.positions.begin(), model.positions.end(),
+                                           [&](const Vec3f& a, const Vec3f& b) { return distance(a) < distance(b); });
+    std::ostringstream text;
+    text << place_of_point(model, static_cast<std::size_t>(farthest - model.positions.begin())) << " lies "
+         << distance(*farthest) << " units from the middle of the model, which makes " << counts.too_short << " of "
+         << counts.with_length << " segments shorter than 1e-6 of the model's longest side; allowed is half of them";
+    throw Error(ErrorKind::bad_input, text.str());
 }
 
 }  // namespace
@@ -74,7 +110,8 @@ StrandGeometry make_strand_geometry(const HairModel& model, const StrandSettings
     if (geometry.strand_begin.empty()) geometry.strand_begin.push_back(0);
     geometry.positions = model.positions;
     find_bounds(geometry);
-    find_degenerate_segments(geometry);
+    const SegmentCounts counts = find_degenerate_segments(geometry);
+    if (counts.too_short > counts.with_length / 2) refuse_stray_point(model, counts);
     return geometry;
 }
 

@@ -49,7 +49,8 @@ inline AdjacentSegments adjacent_segments(const StrandGeometry& strands, std::ui
 /// Applies `settings` to `model`. A segment is degenerate when its length is zero or below 1e-6 of the longest side
 /// of the bounds.
 /// Throws Error(bad_input) naming strand and vertex for a width that is not positive and finite (the message
-/// tells to give strand.width) or an opacity outside [0, 1].
+/// tells to give strand.width), an opacity outside [0, 1], or the point farthest out where the bounds make more than
+/// half of the segments that have a length degenerate.
 StrandGeometry make_strand_geometry(const HairModel& model, const StrandSettings& settings);
 
 }  // namespace hairbake

@@ -124,6 +124,49 @@ TEST(StrandGeometry, ModelsOfAnySizeKeepTheirSegments) {
     }
 }
 
+/// Ten strands of 31 points, a unit apart, within 30 units.
+HairModel ordinary_groom() {
+    HairModel model;
+    model.default_thickness = 0.01f;
+    for (std::uint32_t s = 0; s <= 10; ++s) model.strand_begin.push_back(31 * s);
+    for (int i = 0; i < 310; ++i) model.positions.emplace_back(float(i / 31), float(i % 31), 0.0f);
+    return model;
+}
+
+TEST(StrandGeometry, APointSoFarOutThatTheStrandsCountAsDegenerateIsNamed) {
+    // The bounds are 1e9 units, segments below 1e-6 of that, 1,000 units, are degenerate: of the 300 only the two at
+    // the stray point are longer. Half-way cases: at 1e5 units a segment of one unit is ten times the shortest.
+    HairModel model = ordinary_groom();
+    model.positions[31 * 4 + 7].x = 1e9f;
+    const std::string message = refusal(model, {}).first;
+    EXPECT_NE(message.find("strand 4, vertex 7 lies 1e+09 units"), std::string::npos) << message;
+    EXPECT_NE(message.find("298 of 300 segments"), std::string::npos) << message;
+    model.positions[31 * 4 + 7].x = 1e5f;
+    EXPECT_EQ(make_strand_geometry(model, {}).degenerate_segment_count, 0u);
+}
+
+TEST(StrandGeometry, AnOrdinaryGroomMayHaveDegenerateSegments) {
+    // The bounds are 30 units: 1e-5 is below the shortest length, 3e-5. All points of a strand at one place have no
+    // length and are no sign of a stray point, however many; of those with a length less than half are too short.
+    HairModel model = ordinary_groom();
+    for (std::size_t i = 0; i < 31 * 6; ++i) model.positions[i] = {float(i / 31), 0, 0};
+    for (std::size_t s = 6; s < 9; ++s) model.positions[31 * s + 1].y = 1e-5f;
+    const StrandGeometry geometry = make_strand_geometry(model, {});
+    EXPECT_EQ(geometry.degenerate_segment_count, 6u * 30 + 3);
+}
+
+TEST(StrandGeometry, HalfOfTheSegmentsMayBeTooShortAndNotMore) {
+    // One strand along y of 10 units: segments of 1e-6 are below the shortest, 1e-5; floats near 0 hold them.
+    HairModel model;
+    model.default_thickness = 0.01f;
+    model.strand_begin = {0, 5};
+    model.positions = {{0, 0, 0}, {0, 1e-6f, 0}, {0, 2e-6f, 0}, {0, 5, 0}, {0, 10, 0}};
+    EXPECT_EQ(make_strand_geometry(model, {}).degenerate_segment_count, 2u);
+    model.positions[3].y = 3e-6f;
+    // The median of y is 2e-6, so the last point is the farthest.
+    EXPECT_NE(refusal(model, {}).first.find("strand 0, vertex 4 lies 10 units"), std::string::npos);
+}
+
 TEST(StrandGeometry, HoldsStrandsOfOnePointAndNoStrandsAtAll) {
     const StrandGeometry points = make_strand_geometry(read_hair(make_hair_bytes(31, {0, 0, 0}), "points.hair"), {});
     EXPECT_EQ(points.strand_count(), 3u);
