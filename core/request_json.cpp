@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/json_nesting.h"
 #include "core/request_fields.h"
 
 namespace hairbake {
@@ -73,16 +74,19 @@ Json to_object(const BakeRequest& request, const std::string& block = {}) {
     return object;
 }
 
-Json json_or_text(const std::string& text) {
+/// `path` is the field that it is for.
+Json json_or_text(const std::string& text, const std::string& path) {
     Json value = Json::parse(text, nullptr, false);
-    return value.is_discarded() ? Json(text) : value;
+    if (value.is_discarded()) return text;
+    check_nesting(text, path, ErrorKind::usage, path);
+    return value;
 }
 
-Json list_of(const std::string& text) {
+Json list_of(const std::string& text, const std::string& path) {
     Json list = Json::array();
     for (std::size_t begin = 0; begin <= text.size();) {
         const std::size_t end = std::min(text.find(',', begin), text.size());
-        if (end > begin) list.push_back(json_or_text(text.substr(begin, end - begin)));
+        if (end > begin) list.push_back(json_or_text(text.substr(begin, end - begin), path));
         begin = end + 1;
     }
     return list;
@@ -95,6 +99,7 @@ std::string to_json(const BakeRequest& request, int indent) {
 }
 
 void merge_json(BakeRequest& request, std::string_view text, const std::string& source) {
+    check_nesting(text, source, ErrorKind::usage);
     BakeRequest merged = request;
     try {
         merge_object(merged, Json::parse(text), "");
@@ -112,9 +117,9 @@ void set_field(BakeRequest& request, const std::string& path, const std::string&
         throw Error(ErrorKind::usage, path + " is a block; set one of its fields: " + names_in(path), path);
     if (!field) refuse_unknown(path);
 
-    Json parsed = json_or_text(value);
+    Json parsed = json_or_text(value, path);
     const Json current = field->get(request);
-    if (current.is_array() && !parsed.is_array()) parsed = list_of(value);
+    if (current.is_array() && !parsed.is_array()) parsed = list_of(value, path);
     if (path == "hair" || path == "environment" || path == "occluder" || path == "receiver")
         if (!parsed.is_null()) parsed = value;  // a file may be called 12 or true
     BakeRequest changed = request;

@@ -14,7 +14,7 @@ std::string to_json(const BakeRequest& request, int indent = 2);
 
 /// Takes over the fields that the JSON object `text` names and leaves the others as they are; `source` stands for
 /// it in messages. Nothing is changed when it throws: Error(usage) naming the field, what was found and what is
-/// allowed, for broken JSON, an unknown field or a wrong type. Ranges are validate()'s.
+/// allowed, for broken JSON, JSON of more than 64 levels, an unknown field or a wrong type. Ranges are validate()'s.
 void merge_json(BakeRequest& request, std::string_view text, const std::string& source);
 
 /// Sets one field by its path: set_field(request, "transmittance.method", "trace"). `value` is JSON or, where it

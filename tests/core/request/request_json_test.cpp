@@ -109,6 +109,16 @@ TEST(RequestJson, BrokenJsonIsAUsageErrorThatNamesTheSource) {
     expect_refused(R"({"strand": {"width": 1e999}})", "", {"test.json is not JSON"});
 }
 
+/// What fits into a request file of 1 MiB.
+const std::string deep = std::string(500'000, '[') + std::string(500'000, ']');
+
+TEST(RequestJson, DeepNestingIsRefusedBeforeItIsRead) {
+    expect_refused(deep, "", {"test.json is nested deeper than 64 levels"});
+    expect_refused("{\"outputs\": " + deep + "}", "", {"test.json is nested deeper than 64 levels"});
+    // 64 levels are read, and refused for what they are.
+    expect_refused("{\"outputs\": " + std::string(63, '[') + std::string(63, ']') + "}", "outputs", {"[[["});
+}
+
 TEST(RequestJson, AFailedMergeChangesNothing) {
     BakeRequest request;
     EXPECT_THROW(merge_json(request, R"({"hair": "a", "transmittance": {"voxels": 64, "typo": 1}})", "x"), Error);
@@ -127,6 +137,15 @@ TEST(SetField, ReachesEveryFieldByItsPathWithItsOwnJson) {
         set_field(request, path, value.is_string() ? value.get<std::string>() : value.dump());
     }
     EXPECT_EQ(to_json(request), to_json(source));
+}
+
+TEST(SetField, DeepNestingIsRefusedAndUnclosedBracketsAreText) {
+    BakeRequest request;
+    for (const char* path : {"strand.width", "outputs", "irradiance.lights", "hair"})
+        expect_error([&] { set_field(request, path, deep); }, ErrorKind::usage, path, {"nested deeper than 64 levels"});
+    expect_error([&] { set_field(request, "outputs", "npy," + deep); }, ErrorKind::usage, "outputs", {"64 levels"});
+    set_field(request, "hair", std::string(500, '['));
+    EXPECT_EQ(request.hair, std::string(500, '['));
 }
 
 TEST(SetField, TakesPlainTextAndListsWithCommas) {
