@@ -9,6 +9,7 @@
 #include <valijson/schema_parser.hpp>
 #include <valijson/validator.hpp>
 
+#include "core/base/json_nesting.h"
 #include "server/http/openapi.h"
 #include "server/http/replies.h"
 #include "server/jobs/service.h"
@@ -48,12 +49,9 @@ std::map<std::string, BodySchema> read_schemas() {
 }
 
 Json parse(const std::string& text) {
-    const auto shallow = [](int depth, Json::parse_event_t, Json&) {
-        if (depth > deepest) throw Refusal(Refused::malformed, "the body is nested too deeply");
-        return true;
-    };
+    if (nested_deeper_than(text, deepest)) throw Refusal(Refused::malformed, "the body is nested too deeply");
     try {
-        return Json::parse(text, shallow);
+        return Json::parse(text);
     } catch (const Json::exception& error) {
         throw Refusal(Refused::malformed, std::string("the body is not JSON: ") + error.what());
     }
