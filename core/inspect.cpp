@@ -1,8 +1,6 @@
 #include "core/inspect.h"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <span>
@@ -131,8 +129,7 @@ Json environment_facts(const fs::path& file, Progress& progress) {
 
 Json result_facts(const fs::path& folder) {
     files_of_result(folder);  // throws unless it is a result
-    std::ifstream stream(folder / "manifest.json", std::ios::binary);
-    const Json manifest = Json::parse(std::string{std::istreambuf_iterator<char>(stream), {}});
+    const Json manifest = Json::parse(read_manifest_text(folder / "manifest.json"));
     Json facts{{"kind", "bake result"}};
     for (const char* name : {"id", "stages", "inputs", "transmittance", "error_bar", "repairs", "warnings", "versions",
                              "timings_s", "peak_memory_bytes"})

@@ -1,15 +1,12 @@
 #include "core/result_reader.h"
 
-#include <cerrno>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <system_error>
 
 #include "core/base/digest.h"
 #include "core/base/error.h"
+#include "core/output/manifest.h"
 #include "core/output/npy.h"
 #include "core/request_json.h"
 
@@ -23,16 +20,8 @@ using Json = nlohmann::ordered_json;
     throw Error(ErrorKind::bad_input, file.string() + " " + what);
 }
 
-/// The manifest as JSON; at most 16 MiB (one of 257 maps has 0.3).
 Json read_manifest(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw Error(ErrorKind::bad_input, file.string() + ": " + std::generic_category().message(errno));
-    constexpr std::size_t most = std::size_t(16) << 20;
-    std::string text(most + 1, '\0');
-    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-    text.resize(static_cast<std::size_t>(stream.gcount()));
-    if (text.size() > most) refuse(file, "is longer than a manifest may be (16 MiB)");
-    Json manifest = Json::parse(text, nullptr, false);
+    Json manifest = Json::parse(read_manifest_text(file), nullptr, false);
     if (!manifest.is_object() || manifest.value("format", Json()) != "hairbake result")
         refuse(file, "is not a manifest of hairbake");
     return manifest;

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <system_error>
 #include <thread>
 
 #include "core/base/error.h"
+#include "core/base/json_nesting.h"
 #include "core/output/map_metadata.h"
 #include "core/output/versions.h"
 #include "core/request_json.h"
@@ -235,11 +235,22 @@ void write_manifest(const BakeResult& result, const std::vector<WrittenFile>& fi
     sink.finish();
 }
 
-std::vector<std::string> files_of_result(const std::filesystem::path& folder) {
-    const std::filesystem::path file = folder / "manifest.json";
+std::string read_manifest_text(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     if (!stream) throw Error(ErrorKind::bad_input, file.string() + ": " + std::generic_category().message(errno));
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    constexpr std::size_t most = std::size_t(16) << 20;
+    std::string text(most + 1, '\0');
+    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > most)
+        throw Error(ErrorKind::bad_input, file.string() + " is longer than a manifest may be (16 MiB)");
+    check_nesting(text, file.string(), ErrorKind::bad_input);
+    return text;
+}
+
+std::vector<std::string> files_of_result(const std::filesystem::path& folder) {
+    const std::filesystem::path file = folder / "manifest.json";
+    const std::string text = read_manifest_text(file);
     try {
         const Json manifest = Json::parse(text);
         if (manifest.at("format") != format_name)

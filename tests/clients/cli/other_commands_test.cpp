@@ -42,6 +42,17 @@ TEST(CompareCommand, GivesDifferencesAsATableAndAsJson) {
               0);
     const std::string two = workshop.path("out") + " " + workshop.path("other");
     const auto report = nlohmann::json::parse(hairbake("compare --json " + two).output);
+TEST(InfoCommand, AHostileManifestIsBadInput) {
+    const TemporaryFolder folder;
+    std::ofstream(folder / "manifest.json") << R"({"format": "hairbake result", "files": [], "warnings": )"
+                                            << std::string(500'000, '[') << std::string(500'000, ']') << "}";
+    const Finished run = hairbake("info " + (folder / "").string() + " 2>&1");
+    EXPECT_EQ(run.exit_code, 3) << run.output;
+    EXPECT_TRUE(contains(run.output, "manifest.json is nested deeper than 64 levels")) << run.output;
+    EXPECT_EQ(
+        hairbake("render " + (folder / "").string() + " --out " + (folder / "a.png").string() + " 2>&1").exit_code, 3);
+}
+
     EXPECT_EQ(report["same"], false);
     EXPECT_GT(report["transmittance"]["max_abs"], 0);
     EXPECT_EQ(report["diffuse"]["max_abs"], 0);  // the lighting is the same

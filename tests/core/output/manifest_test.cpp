@@ -99,3 +99,22 @@ TEST(Manifest, ListsItsFilesAndNothingElseIsTakenForOne) {
 
 }  // namespace
 }  // namespace hairbake
+TEST(Manifest, OneThatIsNestedDeeplyOrEndlessIsRefusedUnread) {
+    const test_support::TemporaryFolder folder;
+    const auto refusal = [&] {
+        try {
+            files_of_result(folder / "");
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::bad_input);
+            return std::string(error.what());
+        }
+        return std::string("was accepted");
+    };
+    const std::string name = (folder / "manifest.json").string();
+    std::ofstream(name) << R"({"format": "hairbake result", "files": [], "stages": )" << std::string(500'000, '[')
+                        << std::string(500'000, ']') << "}";
+    EXPECT_EQ(refusal(), name + " is nested deeper than 64 levels");
+    std::ofstream(name) << "{}" << std::string(16 << 20, ' ');
+    EXPECT_EQ(refusal(), name + " is longer than a manifest may be (16 MiB)");
+}
+
