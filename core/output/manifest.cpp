@@ -118,10 +118,12 @@ Json transmittance_facts(const BakeResult& result) {
     return block;
 }
 
+/// Without a vertex to measure at there is no error, which is not an error of 0: null.
 Json error_bar(const ErrorBar& bar) {
-    return {{"rmse", bar.rmse},
-            {"bias", bar.bias},
-            {"ci95", {{"rmse", bar.rmse_ci95}, {"bias", bar.bias_ci95}}},
+    const auto measured = [&](const auto& value) { return bar.vertices > 0 ? Json(value) : Json(); };
+    return {{"rmse", measured(bar.rmse)},
+            {"bias", measured(bar.bias)},
+            {"ci95", {{"rmse", measured(bar.rmse_ci95)}, {"bias", measured(bar.bias_ci95)}}},
             {"vertices", bar.vertices},
             {"inside_strand", bar.inside_strand},
             {"directions", bar.directions}};

@@ -75,6 +75,17 @@ TEST(Manifest, HasTheErrorBarTheTimingsAndTheMemoryOnTop) {
     EXPECT_EQ(manifest["measured"]["rays_per_second"], 5 * 100 / 0.5);  // vertices * directions / seconds
 }
 
+TEST(Manifest, AnErrorBarWithoutAVertexHasNoErrorRatherThanNone) {
+    // Every vertex drawn lay inside another strand.
+    BakeResult result = test_support::small_result();
+    result.error_bar = ErrorBar{};
+    result.error_bar->inside_strand = 5;
+    result.error_bar->directions = 1024;
+    const Json bar = Json::parse(make_manifest(result, files))["error_bar"];
+    EXPECT_EQ(bar, Json::parse(R"({"rmse": null, "bias": null, "ci95": {"rmse": null, "bias": null},
+                                   "vertices": 0, "inside_strand": 5, "directions": 1024})"));
+}
+
 TEST(Manifest, LeavesOutAStageThatDidNotRun) {
     BakeResult result = test_support::small_result();
     result.transmittance.reset();
@@ -97,8 +108,6 @@ TEST(Manifest, ListsItsFilesAndNothingElseIsTakenForOne) {
     }
 }
 
-}  // namespace
-}  // namespace hairbake
 TEST(Manifest, OneThatIsNestedDeeplyOrEndlessIsRefusedUnread) {
     const test_support::TemporaryFolder folder;
     const auto refusal = [&] {
@@ -118,3 +127,5 @@ TEST(Manifest, OneThatIsNestedDeeplyOrEndlessIsRefusedUnread) {
     EXPECT_EQ(refusal(), name + " is longer than a manifest may be (16 MiB)");
 }
 
+}  // namespace
+}  // namespace hairbake

@@ -13,7 +13,9 @@ function ErrorBars({ manifest }) {
     const bar = manifest.error_bar;
     const maps = manifest.irradiance;
     const rows = [];
-    if (bar)
+    if (bar?.vertices === 0)
+        rows.push(['A against traced strands', 'not measured: every vertex drawn lies inside another strand']);
+    else if (bar)
         rows.push(
             ['A against traced strands, RMSE', `${number_words(bar.rmse, 3)} (95 %: ${interval(bar.ci95.rmse)})`],
             ['Bias', `${number_words(bar.bias, 3)} (95 %: ${interval(bar.ci95.bias)})`],
