@@ -30,6 +30,20 @@ Json range_of(std::span<const float> values, float otherwise) {
     return {{"minimum", *low}, {"maximum", *high}};
 }
 
+/// What a bake of the model's own widths will be refused for; empty where it will not.
+std::string width_warning(const HairModel& model) {
+    const auto missing = [](float width) { return !(width > 0); };
+    const std::vector<float>& widths = model.thickness;
+    const auto count = std::count_if(widths.begin(), widths.end(), missing);
+    const bool none = widths.empty() ? missing(model.default_thickness) : count == std::ssize(widths);
+    if (none) return "the model has no strand width: a bake needs strand.width (--width)";
+    if (count == 0) return "";
+    const auto first = static_cast<std::size_t>(std::find_if(widths.begin(), widths.end(), missing) - widths.begin());
+    return std::to_string(count) + " of the model's " + std::to_string(widths.size()) +
+           " vertices have no strand width, the first at " + place_of_point(model, first) +
+           ": a bake needs strand.width (--width)";
+}
+
 Json hair_facts(const fs::path& file) {
     const HairModel model = read_hair(file);
     Json facts{{"kind", "hair model"},
@@ -53,8 +67,7 @@ Json hair_facts(const fs::path& file) {
     facts["colors"] = model.colors.empty() ? Json(triple(model.default_color)) : Json("one a vertex");
     const char* info = model.info.data();
     facts["info"] = std::string(info, std::find(info, info + model.info.size(), '\0'));
-    if (facts["thickness"].value("maximum", model.default_thickness) <= 0)
-        facts["warnings"] = {"the model has no strand width: a bake needs strand.width (--width)"};
+    if (const std::string warning = width_warning(model); !warning.empty()) facts["warnings"] = {warning};
     return facts;
 }
 

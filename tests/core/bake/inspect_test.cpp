@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/bake.h"
+#include "core/hair/hair_file.h"
 #include "tests/core/bake/small_inputs.h"
 
 namespace hairbake {
@@ -44,6 +45,29 @@ TEST(Inspect, ASunIsCountedInPixelsAndShareOfTheLight) {
     EXPECT_NEAR(sunny["share"].get<double>(), 0.6, 0.1);
     const Json overcast = Json::parse(inspect(inputs.folder / "samples" / "overcast.hdr", progress));
     EXPECT_FALSE(overcast.contains("small_lights"));
+}
+
+TEST(Inspect, WidthsThatABakeWillRefuseAreWarnedOf) {
+    const SmallInputs inputs;
+    Progress progress;
+    const auto warnings = [&](const HairModel& model) {
+        write_hair(model, inputs.folder / "a.hair");
+        const Json facts = Json::parse(inspect(inputs.folder / "a.hair", progress));
+        return facts.contains("warnings") ? facts["warnings"].dump() : std::string();
+    };
+    HairModel model = read_hair(*inputs.request().hair);
+    EXPECT_EQ(warnings(model), "");
+    // The tips of the first two strands.
+    const std::uint32_t tip = model.strand_begin[1] - 1;
+    model.thickness[tip] = model.thickness[model.strand_begin[2] - 1] = 0;
+    const std::string some = warnings(model);
+    EXPECT_NE(some.find("2 of the model's 3000 vertices have no strand width"), std::string::npos) << some;
+    EXPECT_NE(some.find("the first at strand 0, vertex " + std::to_string(tip)), std::string::npos) << some;
+    std::fill(model.thickness.begin(), model.thickness.end(), 0.0f);
+    EXPECT_NE(warnings(model).find("the model has no strand width"), std::string::npos);
+    model.thickness.clear();
+    model.default_thickness = 0;
+    EXPECT_NE(warnings(model).find("the model has no strand width"), std::string::npos);
 }
 
 TEST(Inspect, OtherFilesAreBadInput) {
