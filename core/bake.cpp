@@ -8,6 +8,7 @@
 
 #include "core/base/digest.h"
 #include "core/base/direction_set.h"
+#include "core/base/naming_file.h"
 #include "core/base/parallel.h"
 #include "core/environment/environment_files.h"
 #include "core/environment/environment_reader.h"
@@ -105,6 +106,18 @@ void read_hair_stage(BakeResult& result, Progress& progress) {
     });
 }
 
+/// A by the method of the request; `scene` is made where that is to trace.
+Transmittance transmittance_of(const TransmittanceScene& baked, const TransmittanceSettings& settings,
+                               std::optional<StrandScene>& scene, Progress& progress) {
+    if (settings.method == TransmittanceMethod::trace) {
+        scene.emplace(baked.strands, progress, baked.occluder);
+        return trace_all(*scene, baked, settings, progress);
+    }
+    if (settings.method == TransmittanceMethod::opacity_maps)
+        return bake_transmittance_opacity_maps(baked, settings, progress);
+    return bake_transmittance_volume(baked, settings, progress);
+}
+
 /// Hair in memory to A in memory, and A's error bar.
 void transmittance_stage(BakeResult& result, Progress& progress) {
     const TransmittanceSettings& settings = result.request.transmittance;
@@ -115,15 +128,10 @@ void transmittance_stage(BakeResult& result, Progress& progress) {
     baked.receiver = result.receiver ? &*result.receiver : nullptr;
     baked.receiver_is_occluder = baked.receiver && result.hair_inputs.receiver == result.hair_inputs.occluder;
     run_stage(result, progress, "transmittance", [&] {
-        strands = make_strand_geometry(*result.hair, result.request.strand);
-        if (settings.method == TransmittanceMethod::trace) {
-            scene.emplace(strands, progress, occluder);
-            result.transmittance = trace_all(*scene, baked, settings, progress);
-        } else if (settings.method == TransmittanceMethod::opacity_maps) {
-            result.transmittance = bake_transmittance_opacity_maps(baked, settings, progress);
-        } else {
-            result.transmittance = bake_transmittance_volume(baked, settings, progress);
-        }
+        naming_file(*result.request.hair, [&] {
+            strands = make_strand_geometry(*result.hair, result.request.strand);
+            result.transmittance = transmittance_of(baked, settings, scene, progress);
+        });
     });
     result.hair_facts = facts_of(strands);
     add_warnings(result, result.transmittance->warnings);

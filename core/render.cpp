@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/base/error.h"
+#include "core/base/naming_file.h"
 #include "core/base/parallel.h"
 #include "core/camera_json.h"
 #include "core/environment/light_set.h"
@@ -134,7 +135,8 @@ void with_lighting(const RenderRequest& request, const RenderInput& input, const
 }
 
 RenderedPicture render_input(const RenderRequest& request, const RenderInput& input, Progress& progress) {
-    const StrandGeometry strands = make_strand_geometry(input.hair, input.bake.strand);
+    const StrandGeometry strands =
+        naming_file(*input.bake.hair, [&] { return make_strand_geometry(input.hair, input.bake.strand); });
     const std::vector<Vec3f> tangents = vertex_tangents(input.hair);
     const StrandScene scene(strands, progress, input.occluder ? &*input.occluder : nullptr);
     const FirstHits hits(scene, input.mesh ? &*input.mesh : nullptr);

@@ -184,6 +184,34 @@ TEST(Bake, AnEmptyModelHasNoDensityGridWhichIsAWarning) {
     EXPECT_NE(warnings.find("density.vdb is left out"), std::string::npos) << warnings;
 }
 
+TEST(Bake, WhatIsWrongWithTheHairsNumbersBeginsWithItsFile) {
+    const SmallInputs inputs;
+    BakeRequest request = inputs.request();
+    const auto refusal = [&](const HairModel& model) {
+        write_hair(model, *request.hair);
+        Progress progress;
+        try {
+            bake(request, 2, progress);
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::bad_input);
+            return std::string(error.what());
+        }
+        return std::string("was accepted");
+    };
+    const HairModel model = read_hair(*request.hair);
+    HairModel thin = model, stray = model, tiny = model;
+    thin.thickness[3] = 0;
+    EXPECT_TRUE(refusal(thin).starts_with(*request.hair + ": the strand width at strand 0, vertex 3 is 0"))
+        << refusal(thin);
+    // 30 cm of hair: segments of some millimetres are far below 1e-6 * 1e9 = 1,000 units.
+    stray.positions[4].x = 1e9f;
+    EXPECT_TRUE(refusal(stray).starts_with(*request.hair + ": strand 0, vertex 4 lies 1e+09 units")) << refusal(stray);
+    // 1e-33 times as large, widths too: voxels of about 1e-33 units, where 1e-30 is the least.
+    for (Vec3f& p : tiny.positions) p *= 1e-33f;
+    for (float& width : tiny.thickness) width *= 1e-33f;
+    EXPECT_TRUE(refusal(tiny).starts_with(*request.hair + ": the hair model is ")) << refusal(tiny);
+}
+
 TEST(Bake, StagesDoNotKnowOfEachOther) {
     const SmallInputs inputs;
     BakeRequest both = inputs.request(), hair = inputs.request(), environment = inputs.request();
