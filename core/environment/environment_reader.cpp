@@ -57,6 +57,22 @@ void expose(EnvironmentMap& map, const EnvironmentSettings& settings, const std:
         if (row) refuse_overflow(map, file);
 }
 
+/// What the repair made of the pixels, each kind with its count; empty where it had nothing to do.
+std::string repair_warning(const RadianceRepairs& done) {
+    std::ostringstream text;
+    const auto add = [&](std::uint64_t pixels, const char* radiance, const char* became) {
+        if (pixels == 0) return;
+        text << (text.tellp() > 0 ? "; " : "") << pixels << (pixels == 1 ? " pixel" : " pixels") << " with " << radiance
+             << " radiance " << (pixels == 1 ? "was" : "were") << " set to " << became;
+    };
+    add(done.negative_pixels, "negative", "0");
+    if (done.energy_removed > 0 && done.energy_total > 0)
+        text << ", " << 100 * done.energy_removed / done.energy_total << " % of the light";
+    add(done.nan_pixels, "NaN", "0");
+    add(done.infinite_pixels, "infinite", "the largest finite value (-infinity to 0)");
+    return text.str();
+}
+
 }  // namespace
 
 EnvironmentMap read_environment(const std::filesystem::path& path, const EnvironmentSettings& settings,
@@ -71,12 +87,7 @@ EnvironmentMap read_environment(const std::filesystem::path& path, const Environ
                                ", but the environment is a cube map: it was not used");
 
     repair_radiance(map, settings.invalid_radiance, path.string(), progress);
-    if (map.repairs.energy_removed > 0) {
-        std::ostringstream text;
-        text << map.repairs.negative_pixels << " pixels with negative radiance were set to 0, "
-             << 100 * map.repairs.energy_removed / map.repairs.energy_total << " % of the light";
-        map.warnings.push_back(text.str());
-    }
+    if (std::string warning = repair_warning(map.repairs); !warning.empty()) map.warnings.push_back(std::move(warning));
     expose(map, settings, path.string(), progress);
     progress.report("read_environment", 1);
     return map;

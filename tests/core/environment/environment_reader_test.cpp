@@ -217,6 +217,31 @@ TEST(EnvironmentReader, InvalidRadianceIsRefusedNamingThePixelOrClampedAndCounte
     EXPECT_NEAR(back.repairs.energy_total, total, 1e-12);
 }
 
+TEST(EnvironmentReader, EveryKindOfRepairIsWarnedOfWithItsCountAndWhatItBecame) {
+    const TemporaryFolder folder;
+    constexpr float infinity = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+    const auto warnings = [&](const std::vector<float>& invalid) {
+        EnvironmentMap map = make_map(16, [](const Vec3d&) { return Vec3d{1, 1, 1}; });
+        for (std::size_t i = 0; i < invalid.size(); ++i) map.pixels[i].y = invalid[i];
+        write(folder / "bad.exr", map, OIIO::TypeDesc::FLOAT);
+        EnvironmentSettings settings;
+        settings.invalid_radiance = InvalidRadiance::clamp;
+        return read(folder / "bad.exr", settings).warnings;
+    };
+    using Texts = std::vector<std::string>;
+    EXPECT_EQ(warnings({}), Texts{});
+    EXPECT_EQ(warnings({nan}), Texts{"1 pixel with NaN radiance was set to 0"});
+    EXPECT_EQ(warnings({infinity, infinity}),
+              Texts{"2 pixels with infinite radiance were set to the largest finite value (-infinity to 0)"});
+    // All at once, and the share of the light that the negative pixel took away.
+    const Texts all = warnings({-1, nan, infinity});
+    ASSERT_EQ(all.size(), 1u);
+    EXPECT_TRUE(all[0].starts_with("1 pixel with negative radiance was set to 0, ")) << all[0];
+    EXPECT_NE(all[0].find(" % of the light; 1 pixel with NaN radiance was set to 0; 1 pixel with infinite radiance"),
+              std::string::npos)
+        << all[0];
+}
+
 TEST(EnvironmentReader, WrongSettingsAreUsageErrorsNamingTheField) {
     const auto field_of = [](const EnvironmentSettings& settings) -> std::string {
         try {
