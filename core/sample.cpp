@@ -32,6 +32,12 @@ GroomSettings groom_of(const SampleSettings& settings) {
     return groom;
 }
 
+constexpr const char* sample_files[] = {"groom.hair", "head.obj", "sky.hdr", "studio.hdr", "overcast.hdr"};
+
+std::filesystem::path part_of(const std::filesystem::path& folder, const std::string& name) {
+    return folder / (".part-" + name);
+}
+
 void make_folder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
@@ -45,23 +51,39 @@ std::vector<std::filesystem::path> write_samples(const std::filesystem::path& fo
     const GroomSettings groom = groom_of(settings);
     make_folder(folder);
     std::vector<std::filesystem::path> files;
-    // Each file appears whole: it is written under another name first.
-    const auto add = [&](const std::string& name, const auto& write) {
+    // Each file appears whole: it is written under another name first. None is begun after a cancel, so that
+    // discard_sample_parts() has the last word.
+    const auto add = [&](const std::string& name, const auto& write, const auto& make) {
         progress.check();
         progress.report("write", static_cast<double>(files.size()) / 5);
-        const std::filesystem::path part = folder / (".part-" + name);
-        write(part);
-        std::filesystem::rename(part, files.emplace_back(folder / name));
+        const auto made = make();
+        progress.check();
+        write(made, part_of(folder, name));
+        std::filesystem::rename(part_of(folder, name), files.emplace_back(folder / name));
     };
-    add("groom.hair", [&](const auto& file) { write_hair(generate_groom(groom), file); });
-    add("head.obj", [&](const auto& file) { write_obj(make_head_mesh(), file); });
-    for (const auto& [sky, name] : {std::pair(Sky::sunny, "sky.hdr"), std::pair(Sky::studio, "studio.hdr"),
-                                    std::pair(Sky::overcast, "overcast.hdr")})
-        add(name, [&, sky = sky](const auto& file) {
-            write_environment(generate_sky(sky, settings.map_width, settings.seed), file);
-        });
+    const auto hair = [](const HairModel& model, const auto& file) { write_hair(model, file); };
+    try {
+        add("groom.hair", hair, [&] { return generate_groom(groom); });
+        add("head.obj", write_obj, [] { return make_head_mesh(); });
+        for (const auto& [sky, name] : {std::pair(Sky::sunny, "sky.hdr"), std::pair(Sky::studio, "studio.hdr"),
+                                        std::pair(Sky::overcast, "overcast.hdr")})
+            add(name, write_environment,
+                [&, sky = sky] { return generate_sky(sky, settings.map_width, settings.seed); });
+    } catch (...) {
+        discard_sample_parts(folder);
+        throw;
+    }
     progress.report("write", 1);
     return files;
+}
+
+void discard_sample_parts(const std::filesystem::path& folder) noexcept {
+    try {
+        std::error_code ignored;
+        for (const char* name : sample_files) std::filesystem::remove(part_of(folder, name), ignored);
+    } catch (const std::exception&) {
+        // Nothing more can be done.
+    }
 }
 
 }  // namespace hairbake

@@ -25,4 +25,8 @@ struct SampleSettings {
 std::vector<std::filesystem::path> write_samples(const std::filesystem::path& folder, const SampleSettings& settings,
                                                  Progress& progress);
 
+/// Removes what write_samples leaves in `folder` when it is stopped in the middle of a file; it does so itself when it
+/// throws. For a process that ends while it runs: after a cancel nothing is begun that this would miss.
+void discard_sample_parts(const std::filesystem::path& folder) noexcept;
+
 }  // namespace hairbake

@@ -31,7 +31,7 @@ void add_sample_command(CLI::App& app, Action& action) {
     command->callback([options, &action] {
         action = [options] {
             const auto progress = make_progress_display("auto", {{"write", 1}});
-            const SignalWatch watch(*progress, [] {});
+            const SignalWatch watch(*progress, [&] { discard_sample_parts(options->folder); });
             for (const auto& file : write_samples(options->folder, options->settings, *progress))
                 std::printf("%s\n", file.c_str());
         };

@@ -104,6 +104,28 @@ TEST(CancelOverdue, WorkThatDoesNotListenIsEndedAllTheSame) {
     const Ended ended = stop(child, SIGINT);
     EXPECT_EQ(ended.exit_code, 5);
     EXPECT_FALSE(std::filesystem::exists(workshop.path("large/groom.hair")));
+    EXPECT_FALSE(std::filesystem::exists(workshop.path("large/.part-groom.hair")));
+}
+
+TEST(CancelOverdue, ASecondSignalInTheMiddleOfASampleFileLeavesNoPartOfIt) {
+    const Workshop workshop;
+    const auto part_of = [&](const char* name) {
+        return std::filesystem::exists(workshop.path(std::string("large/.part-") + name));
+    };
+    const pid_t child = start("sample " + workshop.path("large") + " --vertices 300 --map-width 4096");
+    while (!part_of("sky.hdr") && !part_of("studio.hdr")) {
+        ASSERT_EQ(::waitpid(child, nullptr, WNOHANG), 0) << "the samples were written before one was seen";
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    // Until one comes after the first was seen to, and ends the program where it stands.
+    int status = 0;
+    while (::waitpid(child, &status, WNOHANG) == 0) {
+        ::kill(child, SIGINT);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    EXPECT_EQ(WEXITSTATUS(status), 5);
+    for (const char* name : {"sky.hdr", "studio.hdr", "overcast.hdr"}) EXPECT_FALSE(part_of(name)) << name;
+    EXPECT_FALSE(std::filesystem::exists(workshop.path("large/overcast.hdr")));
 }
 
 }  // namespace

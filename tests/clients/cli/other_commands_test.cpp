@@ -21,6 +21,15 @@ TEST(SampleCommand, WritesAGroomAHeadAndThreeSkies) {
         EXPECT_TRUE(std::filesystem::exists(workshop.path(std::string("samples/") + name))) << name;
 }
 
+TEST(SampleCommand, AFullDiskEndsWithFourAndLeavesNothingHalfWritten) {
+    const TemporaryFolder folder;
+    // No file may grow beyond 4 blocks of 512 or 1024 bytes; 3,000 vertices take 36,000 bytes.
+    const Finished run = run_program("ulimit -f 4; " + shell_word(HAIRBAKE_PROGRAM) + " sample " +
+                                     (folder / "").string() + " --vertices 3000 --map-width 64 2>&1");
+    EXPECT_EQ(run.exit_code, 4) << run.output;
+    EXPECT_TRUE(std::filesystem::is_empty(folder / ""));
+}
+
 TEST(InfoCommand, TellsTheFactsOfAModelAMapAndAResult) {
     const Workshop workshop;
     ASSERT_EQ(hairbake(workshop.quick_bake()).exit_code, 0);
@@ -33,15 +42,6 @@ TEST(InfoCommand, TellsTheFactsOfAModelAMapAndAResult) {
     EXPECT_EQ(hairbake("info " + workshop.path("missing") + " 2>&1").exit_code, 3);
 }
 
-TEST(CompareCommand, GivesDifferencesAsATableAndAsJson) {
-    const Workshop workshop;
-    ASSERT_EQ(hairbake(workshop.quick_bake()).exit_code, 0);
-    ASSERT_EQ(hairbake("bake" + workshop.hair() + workshop.env() + workshop.out("other") +
-                       " --directions 9 --voxels 32 --face-size 4 --specular-maps 3")
-                  .exit_code,
-              0);
-    const std::string two = workshop.path("out") + " " + workshop.path("other");
-    const auto report = nlohmann::json::parse(hairbake("compare --json " + two).output);
 TEST(InfoCommand, AHostileManifestIsBadInput) {
     const TemporaryFolder folder;
     std::ofstream(folder / "manifest.json") << R"({"format": "hairbake result", "files": [], "warnings": )"
@@ -53,6 +53,15 @@ TEST(InfoCommand, AHostileManifestIsBadInput) {
         hairbake("render " + (folder / "").string() + " --out " + (folder / "a.png").string() + " 2>&1").exit_code, 3);
 }
 
+TEST(CompareCommand, GivesDifferencesAsATableAndAsJson) {
+    const Workshop workshop;
+    ASSERT_EQ(hairbake(workshop.quick_bake()).exit_code, 0);
+    ASSERT_EQ(hairbake("bake" + workshop.hair() + workshop.env() + workshop.out("other") +
+                       " --directions 9 --voxels 32 --face-size 4 --specular-maps 3")
+                  .exit_code,
+              0);
+    const std::string two = workshop.path("out") + " " + workshop.path("other");
+    const auto report = nlohmann::json::parse(hairbake("compare --json " + two).output);
     EXPECT_EQ(report["same"], false);
     EXPECT_GT(report["transmittance"]["max_abs"], 0);
     EXPECT_EQ(report["diffuse"]["max_abs"], 0);  // the lighting is the same

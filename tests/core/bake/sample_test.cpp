@@ -32,6 +32,33 @@ TEST(Sample, WritesFiveFilesThatAreTheSameForTheSameSeed) {
     EXPECT_NE(digest_of_file(a[2]), digest_of_file(c[2]));
 }
 
+/// Cancels itself when it is told of the second file.
+class CancelAtTheHead : public Progress {
+public:
+    void report(std::string_view, double share) override {
+        if (share > 0) cancel();
+    }
+};
+
+TEST(Sample, ACancelOrAFailureLeavesWholeFilesOnly) {
+    const TemporaryFolder folder;
+    const auto names = [&] {
+        std::vector<std::string> found;
+        for (const auto& entry : std::filesystem::directory_iterator(folder / ""))
+            found.push_back(entry.path().filename());
+        return found;
+    };
+    CancelAtTheHead cancelled;
+    EXPECT_THROW(write_samples(folder / "", small(), cancelled), Error);
+    EXPECT_EQ(names(), std::vector<std::string>{"groom.hair"});
+    // A folder of the head's name: the groom is replaced, the head is written and cannot take its place.
+    std::filesystem::create_directories(folder / "head.obj" / "in the way");
+    Progress progress;
+    EXPECT_THROW(write_samples(folder / "", small(), progress), std::exception);
+    EXPECT_FALSE(std::filesystem::exists(folder / ".part-head.obj"));
+    EXPECT_EQ(names().size(), 2u);
+}
+
 TEST(Sample, PaperModelsHaveThePublishedVertexCounts) {
     const TemporaryFolder folder;
     Progress progress;
