@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <fstream>
 
+#include "clients/cli/messages.h"
 #include "core/request_json.h"
 #include "core/request_presets.h"
 
@@ -46,6 +47,12 @@ std::string text_of(const std::string& file) {
     return text;
 }
 
+/// Of a flag that the method, which later settings may have chosen, does not read.
+void warn_of_unused(const RequestFlags& flags, const BakeRequest& request) {
+    if (flags.fields.contains("--sh-bands") && request.irradiance.method == IrradianceMethod::exact)
+        say_warning("--sh-bands is not used: irradiance.method is exact; the bands are those of --method sh");
+}
+
 }  // namespace
 
 void add_request_flags(CLI::App& command, RequestFlags& flags) {
@@ -87,6 +94,7 @@ BakeRequest make_request(const RequestFlags& flags) {
         set_field(request, setting.substr(0, sign), setting.substr(sign + 1));
     }
     validate(request);
+    warn_of_unused(flags, request);
     return request;
 }
 

@@ -28,7 +28,7 @@ void add_request_flags(CLI::App& command, RequestFlags& flags);
 std::string request_flags_help();
 
 /// Defaults, then the preset, the request file, the flags and --set: what comes later wins. Throws Error(usage) naming
-/// the field, Error(bad_input) when the request file cannot be read.
+/// the field, Error(bad_input) when the request file cannot be read. Warns on standard error of flags without effect.
 BakeRequest make_request(const RequestFlags& flags);
 
 }  // namespace hairbake

@@ -91,6 +91,34 @@ TEST(BakeCommand, ShBandsSetsBothKindsOfMap) {
     EXPECT_EQ(manifest["request"]["outputs"], nlohmann::json({"npy", "exr"}));
 }
 
+TEST(BakeCommand, ShBandsWithoutTheMethodThatReadsThemIsWarnedOf) {
+    const Workshop workshop;
+    const std::string bake = "bake" + workshop.env() + workshop.out() + " --face-size 4 --specular-maps 3 --exponent 5";
+    const auto warned = [&](const std::string& flags) {
+        const Finished run = hairbake(bake + flags + " 2>&1");
+        EXPECT_EQ(run.exit_code, 0) << run.output;
+        return contains(run.output, "--sh-bands is not used");
+    };
+    EXPECT_TRUE(warned(" --sh-bands 6"));
+    EXPECT_TRUE(warned(" --sh-bands 6 --method sh --set irradiance.method=exact"));  // later wins
+    EXPECT_FALSE(warned(" --sh-bands 6 --method sh"));
+    EXPECT_FALSE(warned(" --sh-bands 6 --set irradiance.method=sh"));
+    EXPECT_FALSE(warned(""));
+}
+
+TEST(BakeCommand, DeepNestingInARequestFileOrAFlagIsAUsageError) {
+    const Workshop workshop;
+    const auto lists = [](int levels) { return std::string(levels, '[') + std::string(levels, ']'); };
+    std::ofstream(workshop.path("deep.json")) << lists(500'000);
+    // The longest argument that Linux passes on is 128 KiB.
+    for (const std::string& flags :
+         {" --request " + workshop.path("deep.json"), " --set 'outputs=" + lists(60'000) + "'"}) {
+        const Finished run = hairbake("bake" + workshop.hair() + workshop.out() + flags + " 2>&1");
+        EXPECT_EQ(run.exit_code, 2) << run.output;
+        EXPECT_TRUE(contains(run.output, "nested deeper than 64 levels")) << run.output;
+    }
+}
+
 TEST(BakeCommand, TraceIsReachedByItsPath) {
     const Workshop workshop;
     const Finished run =
