@@ -44,10 +44,13 @@ TEST(Accuracy, RealMaps) {
     const auto folder = test_support::shared_data("env");
     if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << test_support::missing_data(folder);
     Progress progress;
+    int count = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
         SCOPED_TRACE(entry.path().filename().string());
         expect_the_issues_accuracy(read_environment(entry.path(), {}, progress));
+        ++count;
     }
+    EXPECT_GT(count, 0) << folder << " is empty";
 }
 
 }  // namespace
