@@ -9,12 +9,11 @@
 namespace hairbake {
 
 double typical_largest_width(const std::vector<float>& widths) {
-    const std::size_t step = widths.size() / 65536 + 1;
-    std::vector<float> sample;
-    for (std::size_t i = 0; i < widths.size(); i += step) sample.push_back(widths[i]);
-    const std::size_t rank = (sample.size() - 1) * 95 / 100;
-    std::nth_element(sample.begin(), sample.begin() + static_cast<std::ptrdiff_t>(rank), sample.end());
-    return sample[rank];
+    // All of them: widths go with the place in the strand, and a step through the model may go with it as well.
+    std::vector<float> ordered = widths;
+    const std::size_t rank = (ordered.size() - 1) * 95 / 100;
+    std::nth_element(ordered.begin(), ordered.begin() + static_cast<std::ptrdiff_t>(rank), ordered.end());
+    return ordered[rank];
 }
 
 GridFrame make_grid_frame(const StrandGeometry& strands, const TransmittanceSettings& settings,

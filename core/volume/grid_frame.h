@@ -47,7 +47,7 @@ struct GridFrame {
     static int voxel_in_brick(int i, int j, int k) { return (i & 7) << 6 | (j & 7) << 3 | (k & 7); }
 };
 
-/// 95th percentile of at most 65,536 widths (not empty) taken at equal steps through the model.
+/// 95th percentile of the widths (not empty).
 double typical_largest_width(const std::vector<float>& widths);
 
 /// The grid that `settings` asks for around all strands, with a margin of one voxel. The mean field needs strands well

@@ -59,6 +59,21 @@ TEST(GridFrame, TakesThe95thPercentileOfTheWidths) {
     }
 }
 
+TEST(GridFrame, WidthsThatRepeatWithTheStrandsAreNotMistakenForTheirRoots) {
+    // 5,000 strands of 30 points, 0.5 wide at the root and 0.001 elsewhere: 1 width of 30 is above the 95th percentile.
+    // Any step through the 150,000 that is a multiple of 30, or shares 2, 3 or 5 with it, meets roots too often.
+    std::vector<float> widths;
+    for (int i = 0; i < 150'000; ++i) widths.push_back(i % 30 == 0 ? 0.5f : 0.001f);
+    EXPECT_EQ(typical_largest_width(widths), 0.001f);
+    // Two of 30, 6.7 %, are more than 5 %, wherever in the strand they are.
+    for (int i = 0; i < 150'000; ++i) widths[i] = i % 30 == 7 || i % 30 == 8 ? 0.5f : 0.001f;
+    EXPECT_EQ(typical_largest_width(widths), 0.5f);
+    // As long a model as makes a step of 30 out of a sample of 65,536: 29 * 65,536 points and more.
+    widths.clear();
+    for (int i = 0; i < 29 * 65536 + 30; ++i) widths.push_back(i % 30 == 0 ? 0.5f : 0.001f);
+    EXPECT_EQ(typical_largest_width(widths), 0.001f);
+}
+
 TEST(GridFrame, WarnsOfTheWidthBoundWithTheVoxelSizeThatHolds) {
     Progress progress;
     const Transmittance wide = bake_transmittance_volume({diagonal(0.125)}, with_voxels(256), progress);
