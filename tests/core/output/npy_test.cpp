@@ -52,9 +52,9 @@ TEST(Npy, NumpyReadsHarmonicsBentConesAndTheReceiver) {
     for (int i = 0; i < 5 * 9; ++i) transmittance.sh.push_back(0.25f * float(i));
     for (int i = 0; i < 5 * 4; ++i) transmittance.bent_cone.push_back(-0.5f * float(i));
     for (int i = 0; i < 3 * 2; ++i) transmittance.receiver.push_back(0.125f * float(i));
-    const auto files = write_directional_npy(transmittance, 3, true, true, folder / "");
-    ASSERT_EQ(files.size(), 3u);
-    EXPECT_EQ(files[0].shape, (std::vector<std::size_t>{5, 9}));
+    const auto written = write_directional_npy(transmittance, 3, true, true, folder / "");
+    ASSERT_EQ(written.size(), 3u);
+    EXPECT_EQ(written[0].shape, (std::vector<std::size_t>{5, 9}));
     const auto python = test_support::run_python(R"(
 import numpy, sys
 f = sys.argv[1]
@@ -88,7 +88,7 @@ TEST(Npy, FilesThatLieAreBadInput) {
     const TemporaryFolder folder;
     const std::size_t huge[] = {1000000, 1000000, 1000000}, two[] = {2};
     const std::string eight_bytes(8, '\0');
-    const std::pair<const char*, std::string> files[] = {
+    const std::pair<const char*, std::string> broken_files[] = {
         {"empty", ""},
         {"magic", "not an array at all, but long enough"},
         {"header_cut", npy_header(two).substr(0, 40)},
@@ -97,7 +97,7 @@ TEST(Npy, FilesThatLieAreBadInput) {
         {"too_long", npy_header(two) + eight_bytes + "x"},
         {"huge", npy_header(huge) + eight_bytes},
     };
-    for (const auto& [name, bytes] : files) {
+    for (const auto& [name, bytes] : broken_files) {
         std::ofstream(folder / name, std::ios::binary) << bytes;
         try {
             read_npy(folder / name);

@@ -16,14 +16,14 @@ protected:
         return {kind, key, "core-" + key, "{}", {}};
     }
 
-    static BakePlan bake(const std::string& id, const std::string& transmittance, const std::string& irradiance,
+    static BakePlan bake(const std::string& id, const std::string& transmittance_key, const std::string& irradiance_key,
                          int priority = 0) {
         BakePlan plan;
         plan.id = id;
         plan.request = "{}";
         plan.priority = priority;
-        if (!transmittance.empty()) plan.transmittance = stage("transmittance", transmittance);
-        if (!irradiance.empty()) plan.irradiance = stage("irradiance", irradiance);
+        if (!transmittance_key.empty()) plan.transmittance = stage("transmittance", transmittance_key);
+        if (!irradiance_key.empty()) plan.irradiance = stage("irradiance", irradiance_key);
         return plan;
     }
 
