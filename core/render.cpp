@@ -211,10 +211,16 @@ void write_picture(const RenderedPicture& picture, double stops, const std::file
         refuse("out", file.string(), "a name that ends in .exr or .png");
     const std::filesystem::path part = file.parent_path() / (".part-" + file.filename().string());
     std::filesystem::remove(part);
-    FileSink sink(part);
-    sink.write(bytes);
-    sink.finish();
-    std::filesystem::rename(part, file);
+    try {
+        FileSink sink(part);
+        sink.write(bytes);
+        sink.finish();
+        std::filesystem::rename(part, file);
+    } catch (...) {
+        std::error_code ignored;
+        std::filesystem::remove(part, ignored);
+        throw;
+    }
 }
 
 }  // namespace hairbake

@@ -65,6 +65,18 @@ TEST(RenderCommand, ShowsTransmittanceAndTangentsOfABakeWithoutLight) {
     EXPECT_EQ(show(workshop.path("dark"), "diffuse", "diffuse.exr").exit_code, 2);
 }
 
+TEST(RenderCommand, LeavesNothingWhereThePictureCannotBeWritten) {
+    // The name is a folder's: the picture is written whole under another name, and cannot take this one.
+    const Workshop workshop;
+    std::filesystem::create_directories(workshop.path("pictures/taken.png/inside"));
+    const Finished run =
+        hairbake("render" + workshop.hair() + " --channel tangent --size 8x8 --samples 1" +
+                 " --set transmittance.voxels=16 --out " + workshop.path("pictures/taken.png") + " 2>&1");
+    EXPECT_NE(run.exit_code, 0);
+    for (const auto& entry : std::filesystem::directory_iterator(workshop.path("pictures")))
+        EXPECT_EQ(entry.path().filename(), "taken.png");
+}
+
 TEST(RenderCommand, RefusesWhatItCannotDo) {
     const Workshop workshop;
     const std::string out = " --out " + workshop.path("a.png");
