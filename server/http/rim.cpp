@@ -60,7 +60,7 @@ private:
 };
 
 /// Waits for nobody: many wait for the one thread that refuses.
-bool refuse_connection(socket_t accepted) {
+void refuse_connection(socket_t accepted) {
     Connection connection(accepted, {.first_byte = 0s, .read = 0s, .write = 0s});
     HttpReply busy = problem(503, "busy", "too many requests are waiting");
     const std::string text = "HTTP/1.1 503 Service Unavailable\r\nContent-Type: " + busy.type +
@@ -69,7 +69,6 @@ bool refuse_connection(socket_t accepted) {
     connection.write(text.data(), text.size());
     connection.flush();
     connection.linger(lingering_refused);
-    return false;
 }
 
 bool is_chunked(const httplib::Request& request) { return request.has_header("Transfer-Encoding"); }
@@ -268,11 +267,12 @@ private:
 
     bool process_and_close_socket(socket_t accepted) override {
         try {
-            return BoundedPool::is_refusing() ? refuse_connection(accepted) : serve_connection(accepted);
+            if (!BoundedPool::is_refusing()) return serve_connection(accepted);
+            refuse_connection(accepted);
         } catch (const std::exception& error) {  // memory ran out where the library does not look for it
             spdlog::error("a connection was dropped: {}", error.what());
-            return false;
         }
+        return false;
     }
 
     bool serve_connection(socket_t accepted) {

@@ -16,7 +16,8 @@ public:
     /// and optionally "irradiance": {...}, "priority"}. Each affected bake is asked for again with the new environment;
     /// "replaces" and "name" mean the bakes under that environment (digest, or path of an environment's name), "models"
     /// the newest bake of each model; all three leave out what failed or was cancelled. With `dry_run` nothing is
-    /// queued and the answer tells how many of the bakes are done already, and what would be reused and computed. Throws Refusal.
+    /// queued and the answer tells how many of the bakes are done already, and what would be reused and computed.
+    /// Throws Refusal.
     std::string rebake(const std::string& text, bool dry_run);
 
     /// How many of its bakes are in which state. Throws Refusal(not_found).

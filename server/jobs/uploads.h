@@ -39,8 +39,8 @@ public:
     /// Removes what has expired.
     void expire();
 
-    /// Throws Refusal when create() would: (too_many) when that token has too many unfinished uploads, or with others of
-    /// its own would announce more than half of the budget, (full) when all of them together would pass the budget.
+    /// Throws Refusal when create() would: (too_many) when that token has too many unfinished uploads, or with others
+    /// of its own would announce more than half of the budget, (full) when all of them together would pass the budget.
     void check(std::uint64_t bytes, const std::string& sha256, const std::string& token);
     /// `sha256` is what the whole file must have; `token` names who sends it. Throws Refusal as check() does.
     UploadState create(std::uint64_t bytes, const std::string& sha256, const std::string& metadata,

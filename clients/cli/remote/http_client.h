@@ -18,7 +18,7 @@ namespace hairbake {
 struct HttpAnswer {
     int status = 0;
     std::map<std::string, std::string> headers;  ///< names in lower case; the last of equal names
-    std::string body{};
+    std::string body;
 
     /// Empty when there is none.
     std::string header(const std::string& name) const;

@@ -17,7 +17,8 @@ export function use_inputs(kind) {
     };
     const names = useMemo(() => names_by_digest(named.items ?? []), [named.items]);
     const files = useMemo(file_names, [list.items]);
-    return { items: list.items, more: list.more || named.more, names, files, problem: list.problem ?? named.problem, reload };
+    const more = list.more || named.more;
+    return { items: list.items, more, names, files, problem: list.problem ?? named.problem, reload };
 }
 
 /** Points a name at a file: entry is { kind, id } with the file's digest as id. */

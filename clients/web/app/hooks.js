@@ -38,7 +38,7 @@ export function use_watch(path, every_ms, ended = () => false, round = 0) {
     return state;
 }
 
-/** { items, more } of a list that comes in pages: all of them, or as many as are worth showing and that there are more. */
+/** { items, more } of a list that comes in pages: up to `most` items, and whether there are more. */
 async function all_pages(api, path, key, most) {
     const items = [];
     for (let cursor = '';;) {
@@ -49,7 +49,7 @@ async function all_pages(api, path, key, most) {
     }
 }
 
-/** { items, more, problem, reload } of a list that comes in pages: up to `most` items, and whether there are more. */
+/** { items, more, problem, reload } of such a list. */
 export function use_list(path, key, most = most_shown) {
     const { api } = use_app();
     const [state, set_state] = useState({ items: null });

@@ -46,6 +46,18 @@ std::vector<StrandPoint> random_points(int count) {
     return points;
 }
 
+/// Forty strands of five points in a ball, of opacity 0.7, that hide a good part of the light from one another.
+StrandGeometry tangle() {
+    Random random(5);
+    StrandModel model;
+    for (int s = 0; s < 40; ++s) {
+        std::vector<Vec3d> strand{random_point_in_ball(random, 1)};
+        for (int k = 0; k < 4; ++k) strand.push_back(strand.back() + test_support::random_direction(random) * 0.4);
+        model.add(strand, 0.2, 0.7);
+    }
+    return model.geometry();
+}
+
 std::vector<FiberLight> light(const FiberLighting& lighting, const std::vector<StrandPoint>& points) {
     std::vector<FiberLight> result(points.size());
     lighting.light(points, result, Progress());
@@ -111,18 +123,12 @@ TEST(ReferenceMode, DrawsOtherLightsForAnotherNumberOfThem) {
     // The report takes the noise of the reference from two pictures of n and n + 1 lights. If they are independent, the
     // variance of their difference is the sum of their variances. 600 seeds: each variance is known to sqrt(2 / 600) =
     // 6 %, the ratio to some 8 %; allowed are three times that. (With shared draws the ratio was about a half.)
-    Random random(5);
-    StrandModel model;
-    for (int s = 0; s < 40; ++s) {
-        std::vector<Vec3d> strand{random_point_in_ball(random, 1)};
-        for (int k = 0; k < 4; ++k) strand.push_back(strand.back() + test_support::random_direction(random) * 0.4);
-        model.add(strand, 0.2, 0.7);
-    }
-    const StrandGeometry strands = model.geometry();
+    const StrandGeometry strands = tangle();
     Progress progress;
     const StrandScene scene(strands, progress);
     const LightSum lights = lights_of(soft_sky(), 16);
     std::vector<StrandPoint> points(600, random_points(1)[0]);
+    Random random(6);
     for (StrandPoint& point : points) {
         point.place = {51, 0.25};
         point.seed = random.next_u64();
@@ -153,14 +159,7 @@ TEST(ReferenceMode, AgreesWithTheSumOverAShadowRayToEveryLight) {
     // Independent: T of every light from the tracer's packets, kernels in double. 40,000 drawn lights: each brings
     // colour times (T - guess), of magnitude at most max(flux channel / energy) ~ 1/2 of the unhidden sum S (grey to
     // within the noise of the sky: a third, at most twice that), so sigma <= 0.5 S / 200; u = 0.25 mixes the vertices.
-    Random random(5);
-    StrandModel model;
-    for (int s = 0; s < 40; ++s) {
-        std::vector<Vec3d> strand{random_point_in_ball(random, 1)};
-        for (int k = 0; k < 4; ++k) strand.push_back(strand.back() + test_support::random_direction(random) * 0.4);
-        model.add(strand, 0.2, 0.7);
-    }
-    const StrandGeometry strands = model.geometry();
+    const StrandGeometry strands = tangle();
     Progress progress;
     const StrandScene scene(strands, progress);
     const LightSet set = make_light_set(testing::noise_map(64, 7), 6, Progress());

@@ -61,7 +61,8 @@ export function Rebake({ request, label = 'Re-bake' }) {
         ${!state.forecast && !state.problem && html`<p aria-busy="true">Counting what is reused</p>`}
         ${
             state.forecast &&
-            html`<${Forecast} forecast=${state.forecast} /><button onClick=${confirm} disabled=${state.busy} aria-busy=${state.busy ? 'true' : null}>
+            html`<${Forecast} forecast=${state.forecast} /><button onClick=${confirm}
+                disabled=${state.busy} aria-busy=${state.busy ? 'true' : null}>
                 ${is_done(state.forecast) ? 'Show' : label} ${count_words(state.forecast.bakes, 'bake')}</button>`
         }
     </section>`;
