@@ -95,12 +95,7 @@ void write_false_colors(const std::vector<Vec3f>& difference, int width, int hei
     canvas.text(margin, height + legend - 5, "0", 11, text);
     canvas.text(width / 2, height + legend - 5, "absolute difference", 11, text, Canvas::Align::center);
     canvas.text(width - margin, height + legend - 5, label, 11, text, Canvas::Align::right);
-    const std::filesystem::path part = file.parent_path() / (".part-" + file.filename().string());
-    std::filesystem::remove(part);
-    FileSink sink(part);
-    sink.write(encode_png(canvas.rgb(), canvas.width(), canvas.height(), {}));
-    sink.finish();
-    std::filesystem::rename(part, file);
+    write_whole_file(file, encode_png(canvas.rgb(), canvas.width(), canvas.height(), {}));
 }
 
 }  // namespace

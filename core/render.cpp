@@ -209,18 +209,7 @@ void write_picture(const RenderedPicture& picture, double stops, const std::file
         bytes = encode_png(screen_bytes(picture, stops), picture.width, picture.height, {});
     else
         refuse("out", file.string(), "a name that ends in .exr or .png");
-    const std::filesystem::path part = file.parent_path() / (".part-" + file.filename().string());
-    std::filesystem::remove(part);
-    try {
-        FileSink sink(part);
-        sink.write(bytes);
-        sink.finish();
-        std::filesystem::rename(part, file);
-    } catch (...) {
-        std::error_code ignored;
-        std::filesystem::remove(part, ignored);
-        throw;
-    }
+    write_whole_file(file, bytes);
 }
 
 }  // namespace hairbake

@@ -57,4 +57,19 @@ WrittenFile FileSink::finish() {
     return {file_.filename().string(), digest_.hex(), bytes_, {}, {}, {}};
 }
 
+void write_whole_file(const std::filesystem::path& file, std::span<const std::byte> bytes) {
+    const std::filesystem::path part = file.parent_path() / (".part-" + file.filename().string());
+    std::filesystem::remove(part);
+    try {
+        FileSink sink(part);
+        sink.write(bytes);
+        sink.finish();
+        std::filesystem::rename(part, file);
+    } catch (...) {
+        std::error_code ignored;
+        std::filesystem::remove(part, ignored);
+        throw;
+    }
+}
+
 }  // namespace hairbake

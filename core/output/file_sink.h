@@ -49,6 +49,11 @@ private:
     std::vector<std::byte> pending_;  ///< small writes, collected
 };
 
+/// Writes a file that appears whole, in place of one that is there: `bytes` go under another name first. Nothing is
+/// left of them when that fails. Throws as FileSink does, std::filesystem::filesystem_error where the name cannot be
+/// taken.
+void write_whole_file(const std::filesystem::path& file, std::span<const std::byte> bytes);
+
 /// Error for the system's errno about `file`: its kind tells a full disk from other failures.
 [[noreturn]] void throw_system_error(const std::filesystem::path& file, int error);
 

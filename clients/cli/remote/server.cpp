@@ -17,10 +17,6 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
 
 bool is_busy(int status) { return status == 429 || status == 502 || status == 503 || status == 504; }
 
-std::string text_in(const Json& json, const char* field) {
-    return json.is_object() && json.contains(field) && json[field].is_string() ? json[field].get<std::string>() : "";
-}
-
 /// The problem+json body, or an empty object.
 Json problem_of(const HttpAnswer& answer) {
     try {
@@ -127,6 +123,10 @@ Json parse_json(const std::string& text) {
 bool is_id(const std::string& text) {
     const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_'; };
     return !text.empty() && text.size() <= 128 && std::all_of(text.begin(), text.end(), fits);
+}
+
+std::string text_in(const Server::Json& json, const char* field) {
+    return json.is_object() && json.contains(field) && json[field].is_string() ? json[field].get<std::string>() : "";
 }
 
 std::string id_in(const Json& json, const char* field) {

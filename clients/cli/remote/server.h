@@ -72,6 +72,9 @@ Server::Json parse_json(const std::string& text);
 /// them.
 bool is_id(const std::string& text);
 
+/// json[field]; empty where there is no text.
+std::string text_in(const Server::Json& json, const char* field);
+
 /// json[field], an id. Throws RemoteError(refused).
 std::string id_in(const Server::Json& json, const char* field);
 

@@ -18,25 +18,21 @@ struct StatusOptions {
     bool json = false;
 };
 
-std::string plain_field(const Json& view, const char* field) {
-    return view.contains(field) && view[field].is_string() ? plain(view[field].get<std::string>()) : "";
-}
-
 /// "ID running 43 %, 12 s left; hair 0123456789ab, environment stage1/sunset"
 std::string line_of(const Json& view) {
-    const std::string state = plain_field(view, "state");
+    const std::string state = plain(text_in(view, "state"));
     std::string line = id_in(view, "id") + " " + state;
     if (state == "running" && view.contains("fraction"))
         line += " " + std::to_string(std::lround(100 * view["fraction"].get<double>())) + " %";
     if (view.contains("seconds_left") && view["seconds_left"].is_number())
         line += ", " + std::to_string(std::lround(view["seconds_left"].get<double>())) + " s left";
     for (const auto& [field, name] : {std::pair("model", "hair"), std::pair("environment", "environment")}) {
-        std::string value = plain_field(view, field).substr(0, 12);
+        std::string value = plain(text_in(view, field)).substr(0, 12);
         const Json names = view.value("names", Json::object());
-        if (names.contains(name)) value = plain_field(names[name], "path");
+        if (names.contains(name)) value = plain(text_in(names[name], "path"));
         if (!value.empty()) line += std::string("; ") + name + " " + value;
     }
-    if (view.contains("error") && view["error"].is_object()) line += ": " + plain_field(view["error"], "message");
+    if (view.contains("error") && view["error"].is_object()) line += ": " + plain(text_in(view["error"], "message"));
     return line;
 }
 
