@@ -42,7 +42,8 @@ def main():
     parser.add_argument("root", type=Path)
     parser.add_argument("program")
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--full", action="store_true", help="also the published models, 0.7 to 1.5 million vertices")
+    parser.add_argument("--full", action="store_true",
+                        help="more hair, less noise, and the published models, 0.7 to 1.5 million vertices")
     parser.add_argument("--tiny", action="store_true", help="everything so small that it shows nothing: for the test")
     parser.add_argument("--data", type=Path, help="folder with hair/sintel.hair and env/*.hdr")
     parser.add_argument("--only", nargs="+", help="names of the sections to make, such as offline_times")
@@ -51,7 +52,7 @@ def main():
     if (root / folder).exists():
         shutil.rmtree(root / folder)
     (root / folder / "pictures").mkdir(parents=True)
-    size = Size.tiny() if options.tiny else Size(full=options.full)
+    size = Size.tiny() if options.tiny else Size.published() if options.full else Size()
     start = time.monotonic()
     hairbake = Hairbake(root, options.program)
     version = hairbake.run("--version").strip()
@@ -59,7 +60,8 @@ def main():
     page = Page(root, folder, "hairbake: report",
                 f"{version}, {time.strftime('%Y-%m-%d %H:%M')}, on {hardware()}. A generated groom of {size.vertices:,} "
                 f"vertices, strands {size.width_scale:g} times as wide as hair so that they cover the head as hair does, "
-                f"generated skies. Pictures of {size.pixels} x {size.pixels} pixels, {size.samples} samples each. "
+                f"generated skies. Pictures of {size.pixels} x {size.pixels} pixels, {size.samples} samples each; "
+                f"{size.light_samples} lights for each sample of the reference. "
                 "Commands run from the project's folder.")
     page.commands(line for line in hairbake.take_commands() if "--version" not in line)
     for section in (transmittance.with_and_without, lighting.decoupling, lighting.specular_maps, lighting.sh_maps,
