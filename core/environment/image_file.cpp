@@ -72,12 +72,16 @@ void check_size(const Source& source, const OIIO::ImageSpec& spec, const std::st
 
 // Tiles are decoded a row of them at a time, and whole even where they reach beyond the image.
 void check_tiles(const Source& source, const OIIO::ImageSpec& spec) {
-    if (spec.tile_width <= 0 || spec.tile_height <= 0) return;
+    if (spec.tile_width == 0) return;
+    const std::string size = std::to_string(spec.tile_width) + " x " + std::to_string(spec.tile_height);
+    if (spec.tile_width < 0 || spec.tile_height <= 0 || spec.tile_depth < 0 || spec.tile_depth > 1)
+        source.fail("the tiles are " + size + " x " + std::to_string(spec.tile_depth) +
+                    " pixels; allowed are flat ones of 1 to 2147483647 pixels each way");
     const std::uintmax_t pixels = std::uintmax_t(std::max(spec.width, spec.tile_width)) * spec.tile_height;
     if (pixels > most_bytes_of_tiles / (sizeof(float) * spec.nchannels))
-        source.fail("the tiles are " + std::to_string(spec.tile_width) + " x " + std::to_string(spec.tile_height) +
-                    " pixels of " + std::to_string(spec.nchannels) + " channels; allowed are " +
-                    std::to_string(most_bytes_of_tiles >> 20) + " MiB of floats in a row of tiles");
+        source.fail("the tiles are " + size + " pixels of " + std::to_string(spec.nchannels) +
+                    " channels; allowed are " + std::to_string(most_bytes_of_tiles >> 20) +
+                    " MiB of floats in a row of tiles");
 }
 
 void check_placement(const Source& source, const OIIO::ImageSpec& spec) {

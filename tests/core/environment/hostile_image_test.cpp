@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <fstream>
+#include <optional>
 
 #include "core/environment/environment_reader.h"
 #include "core/environment/environment_writer.h"
@@ -92,9 +93,13 @@ std::string tiled_exr_header(std::uint32_t width, std::uint32_t height, std::uin
     return exr_header(width, height, names, exr_attribute("tiles", "tiledesc", tiles), 0x200);
 }
 
-// A TIFF (8 bits a sample, deflate) of one strip or, if `tile_width` is given, one tile as high as the image.
+struct Tile {
+    std::uint32_t width, height, depth = 1;
+};
+
+// A TIFF (8 bits a sample, deflate) of one strip or tile.
 std::string tiff_header(std::uint32_t width, std::uint32_t height, std::uint32_t channels,
-                        std::uint32_t tile_width = 0) {
+                        const std::optional<Tile>& one_tile = {}) {
     std::string entries;
     const auto number = [&](std::uint32_t tag, std::uint32_t value) {
         entries += little16(tag) + little16(4) + little(1) + little(value);
@@ -103,9 +108,11 @@ std::string tiff_header(std::uint32_t width, std::uint32_t height, std::uint32_t
     using Tags = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
     const Tags strip{{256, width}, {257, height},   {258, 8},      {259, 8},    {262, 2},
                      {273, data},  {277, channels}, {278, height}, {279, bytes}};
-    const Tags tile{{256, width},    {257, height},     {258, 8},      {259, 8},    {262, 2},
-                    {277, channels}, {322, tile_width}, {323, height}, {324, data}, {325, bytes}};
-    for (const auto& [tag, value] : tile_width ? tile : strip) number(tag, value);
+    const Tile size = one_tile.value_or(Tile{});
+    const Tags tile{{256, width}, {257, height},   {258, 8},           {259, 8},
+                    {262, 2},     {277, channels}, {322, size.width},  {323, size.height},
+                    {324, data},  {325, bytes},    {32998, size.depth}};
+    for (const auto& [tag, value] : one_tile ? tile : strip) number(tag, value);
     const std::string file = "II" + little16(42) + little(8) + little16(std::uint32_t(entries.size() / 12)) + entries;
     return file + std::string(data - file.size(), '\0');
 }
@@ -153,7 +160,7 @@ TEST(HostileImage, AnAllowedSizeThatTheFileCannotHoldIsRefusedBeforeMemoryIsTake
     save(folder / "a.exr", exr_header(16384, 8192) + pixels_of(5000));
     save(folder / "a.png", png_header(16384, 8192) + pixels_of(5000));
     save(folder / "a.tif", tiff_header(16384, 8192, 3) + pixels_of(5000));
-    save(folder / "tiled.tif", tiff_header(16384, 8192, 64, 16384) + pixels_of(0));
+    save(folder / "tiled.tif", tiff_header(16384, 8192, 64, Tile{16384, 8192}) + pixels_of(0));
     for (const char* name : {"a.hdr", "a.pfm", "a.exr", "a.png", "a.tif", "tiled.tif"}) {
         const std::string size = std::to_string(std::filesystem::file_size(folder / name));
         const std::string expected = "16384 x 8192 pixels, but the file of " + size + " bytes cannot hold them";
@@ -168,7 +175,7 @@ TEST(HostileImage, TilesTooLargeToDecodeAreRefusedBeforeMemoryIsTaken) {
     forget_peak();
     const long before = peak_kilobytes();
     // Files large enough for the declared size: 16384 x 8192 x 64 bytes / 66,048 is 130,056, of halfs twice as much.
-    save(folder / "a.tif", tiff_header(16384, 8192, 64, 16384) + pixels_of(140'000));
+    save(folder / "a.tif", tiff_header(16384, 8192, 64, Tile{16384, 8192}) + pixels_of(140'000));
     save(folder / "a.exr", tiled_exr_header(16384, 8192, 16384, 130) + pixels_of(280'000));
     save(folder / "wide.exr", tiled_exr_header(16, 8, 16384, 130) + pixels_of(0));
     for (const auto& [name, tiles] :
@@ -179,6 +186,24 @@ TEST(HostileImage, TilesTooLargeToDecodeAreRefusedBeforeMemoryIsTaken) {
     }
     // The least of the rows of tiles would be 16384 x 130 x 64 x 4 bytes = 545 MB. OpenEXR itself sets aside addresses
     // for a tile of halfs, of which AddressSanitizer takes notes in an eighth, 34 MB.
+    EXPECT_LT(peak_kilobytes() - before, 100'000);
+}
+
+TEST(HostileImage, TilesThatAreDeepOrOfNegativeSizeAreRefused) {
+    // TIFF's sizes of a tile are unsigned and OpenImageIO's are int: from 2^31 on they are negative. A depth of 2^22
+    // would be 16 x 16 x 3 x 2^22 floats, 13 GB, for an image of 16 x 8 pixels.
+    const TemporaryFolder folder;
+    forget_peak();
+    const long before = peak_kilobytes();
+    const std::uint32_t negative = 0x80000010u;
+    for (const Tile& tile : {Tile{16, 16, 1u << 22}, Tile{16, 16, ~0u}, Tile{16, negative}, Tile{negative, 16}}) {
+        save(folder / "a.tif", tiff_header(16, 8, 3, tile) + pixels_of(1000));
+        EXPECT_NE(refusal(folder / "a.tif").find("a.tif: "), std::string::npos) << tile.width << " " << tile.depth;
+    }
+    save(folder / "a.tif", tiff_header(16, 8, 3, Tile{16, 16, 1u << 22}) + pixels_of(1000));
+    EXPECT_NE(refusal(folder / "a.tif").find("the tiles are 16 x 16 x 4194304 pixels; allowed are flat ones"),
+              std::string::npos)
+        << refusal(folder / "a.tif");
     EXPECT_LT(peak_kilobytes() - before, 100'000);
 }
 
