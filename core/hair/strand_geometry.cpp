@@ -51,14 +51,18 @@ void find_bounds(StrandGeometry& geometry) {
     geometry.bounds_max = high;
 }
 
+double longest_side(const StrandGeometry& geometry) {
+    const Vec3f side = geometry.bounds_max - geometry.bounds_min;
+    return std::max({side.x, side.y, side.z});
+}
+
 /// Of the segments that have a length at all.
 struct SegmentCounts {
     std::size_t with_length = 0, too_short = 0;
 };
 
 SegmentCounts find_degenerate_segments(StrandGeometry& geometry) {
-    const Vec3f side = geometry.bounds_max - geometry.bounds_min;
-    const double shortest = 1e-6 * std::max({side.x, side.y, side.z});
+    const double shortest = 1e-6 * longest_side(geometry);
     SegmentCounts counts;
     geometry.segments.assign(geometry.vertex_count(), Segment::none);
     for (std::size_t s = 0; s < geometry.strand_count(); ++s)
@@ -87,10 +91,14 @@ Vec3f median_position(std::vector<Vec3f> positions) {
 }
 
 /// One point far out makes the bounds so large that the strands themselves count as degenerate: A would be 1 without a
-/// word, and the traced reference would agree.
-[[noreturn]] void refuse_stray_point(const HairModel& model, const SegmentCounts& counts) {
+/// word, and the traced reference would agree. It is one point where half of all lie within a hundredth of the longest
+/// side; else the segments are short by themselves, as where every point stands twice.
+void refuse_stray_point(const HairModel& model, const StrandGeometry& geometry, const SegmentCounts& counts) {
     const Vec3d median(median_position(model.positions));
     const auto distance = [&](const Vec3f& p) { return length(Vec3d(p) - median); };
+    const auto nearby = std::count_if(model.positions.begin(), model.positions.end(),
+                                      [&](const Vec3f& p) { return distance(p) < 0.01 * longest_side(geometry); });
+    if (2 * static_cast<std::size_t>(nearby) < model.positions.size()) return;
     const auto farthest = std::max_element(model.positions.begin(), model.positions.end(),
                                            [&](const Vec3f& a, const Vec3f& b) { return distance(a) < distance(b); });
     std::ostringstream text;
@@ -111,7 +119,7 @@ StrandGeometry make_strand_geometry(const HairModel& model, const StrandSettings
     geometry.positions = model.positions;
     find_bounds(geometry);
     const SegmentCounts counts = find_degenerate_segments(geometry);
-    if (counts.too_short > counts.with_length / 2) refuse_stray_point(model, counts);
+    if (counts.too_short > counts.with_length / 2) refuse_stray_point(model, geometry, counts);
     return geometry;
 }
 

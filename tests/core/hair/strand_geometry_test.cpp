@@ -155,6 +155,18 @@ TEST(StrandGeometry, AnOrdinaryGroomMayHaveDegenerateSegments) {
     EXPECT_EQ(geometry.degenerate_segment_count, 6u * 30 + 3);
 }
 
+TEST(StrandGeometry, AGroomWhosePointsAllStandTwiceIsNoSignOfAStrayPoint) {
+    // Each point again 1e-5 beside it, in 30 units: of the 61 segments of a strand of 62 points 31 are shorter than
+    // 3e-5, more than half. No point is far out: the nearest half of them lies far beyond .3 units from the middle.
+    const HairModel once = ordinary_groom();
+    HairModel model = once;
+    model.positions.clear();
+    for (const Vec3f& p : once.positions)
+        for (const float x : {0.0f, 1e-5f}) model.positions.push_back(p + Vec3f(x, 0, 0));
+    for (std::uint32_t& begin : model.strand_begin) begin *= 2;
+    EXPECT_EQ(make_strand_geometry(model, {}).degenerate_segment_count, 10u * 31);
+}
+
 TEST(StrandGeometry, HalfOfTheSegmentsMayBeTooShortAndNotMore) {
     // One strand along y of 10 units: segments of 1e-6 are below the shortest, 1e-5; floats near 0 hold them.
     HairModel model;
