@@ -144,6 +144,15 @@ std::string diff(const std::filesystem::path& first, const std::filesystem::path
     return report.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
+void discard_diff_part(const std::filesystem::path& picture) noexcept {
+    try {
+        std::error_code ignored;
+        std::filesystem::remove(part_of(picture), ignored);
+    } catch (const std::exception&) {
+        // Nothing more can be done.
+    }
+}
+
 std::string diff_as_lines(const std::string& report) {
     const Json object = Json::parse(report);
     const auto number = [](const Json& value) { return value.is_number() ? value.get<double>() : std::nan(""); };

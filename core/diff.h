@@ -20,6 +20,9 @@ namespace hairbake {
 std::string diff(const std::filesystem::path& first, const std::filesystem::path& second,
                  const std::optional<std::filesystem::path>& picture, std::optional<double> scale, Progress& progress);
 
+/// Removes what a diff() that does not end has written of `picture`.
+void discard_diff_part(const std::filesystem::path& picture) noexcept;
+
 /// A report of diff() in lines for people.
 std::string diff_as_lines(const std::string& report);
 

@@ -9,6 +9,7 @@
 #include "core/hair/groom_generator.h"
 #include "core/hair/hair_file.h"
 #include "core/hair/head_mesh.h"
+#include "core/output/file_sink.h"
 
 namespace hairbake {
 namespace {
@@ -34,10 +35,6 @@ GroomSettings groom_of(const SampleSettings& settings) {
 
 constexpr const char* sample_files[] = {"groom.hair", "head.obj", "sky.hdr", "studio.hdr", "overcast.hdr"};
 
-std::filesystem::path part_of(const std::filesystem::path& folder, const std::string& name) {
-    return folder / (".part-" + name);
-}
-
 void make_folder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
@@ -58,8 +55,8 @@ std::vector<std::filesystem::path> write_samples(const std::filesystem::path& fo
         progress.report("write", static_cast<double>(files.size()) / 5);
         const auto made = make();
         progress.check();
-        write(made, part_of(folder, name));
-        std::filesystem::rename(part_of(folder, name), files.emplace_back(folder / name));
+        write(made, part_of(folder / name));
+        std::filesystem::rename(part_of(folder / name), files.emplace_back(folder / name));
     };
     const auto hair = [](const HairModel& model, const auto& file) { write_hair(model, file); };
     try {
@@ -80,7 +77,7 @@ std::vector<std::filesystem::path> write_samples(const std::filesystem::path& fo
 void discard_sample_parts(const std::filesystem::path& folder) noexcept {
     try {
         std::error_code ignored;
-        for (const char* name : sample_files) std::filesystem::remove(part_of(folder, name), ignored);
+        for (const char* name : sample_files) std::filesystem::remove(part_of(folder / name), ignored);
     } catch (const std::exception&) {
         // Nothing more can be done.
     }

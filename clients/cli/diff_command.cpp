@@ -24,7 +24,9 @@ void add_diff_command(CLI::App& app, Action& action) {
     command->callback([options, &action] {
         action = [options] {
             Progress progress;
-            const SignalWatch watch(progress, [] {});
+            const SignalWatch watch(progress, [options] {
+                if (options->picture) discard_diff_part(*options->picture);
+            });
             const std::string report =
                 diff(options->first, options->second, options->picture, options->scale, progress);
             std::fputs(options->json ? (report + "\n").c_str() : diff_as_lines(report).c_str(), stdout);

@@ -57,8 +57,12 @@ WrittenFile FileSink::finish() {
     return {file_.filename().string(), digest_.hex(), bytes_, {}, {}, {}};
 }
 
+std::filesystem::path part_of(const std::filesystem::path& file) {
+    return file.parent_path() / (".part-" + file.filename().string());
+}
+
 void write_whole_file(const std::filesystem::path& file, std::span<const std::byte> bytes) {
-    const std::filesystem::path part = file.parent_path() / (".part-" + file.filename().string());
+    const std::filesystem::path part = part_of(file);
     std::filesystem::remove(part);
     try {
         FileSink sink(part);

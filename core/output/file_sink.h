@@ -49,7 +49,10 @@ private:
     std::vector<std::byte> pending_;  ///< small writes, collected
 };
 
-/// Writes a file that appears whole, in place of one that is there: `bytes` go under another name first. Nothing is
+/// Where write_whole_file() writes until the file is whole: a hidden neighbour.
+std::filesystem::path part_of(const std::filesystem::path& file);
+
+/// Writes a file that appears whole, in place of one that is there: `bytes` go to part_of(file) first. Nothing is
 /// left of them when that fails. Throws as FileSink does, std::filesystem::filesystem_error where the name cannot be
 /// taken.
 void write_whole_file(const std::filesystem::path& file, std::span<const std::byte> bytes);
