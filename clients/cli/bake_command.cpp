@@ -90,14 +90,16 @@ void add_bake_command(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("bake", "Bake transmittance and irradiance maps into a result folder");
     const auto options = std::make_shared<BakeOptions>();
     command->add_option("--hair", options->request.hair, "hair model; alone: transmittance only");
-    add_request_flags(*command, options->request);
+    add_request_flags(*command, options->request,
+                      "HDR environment: a picture, or a cube's six as a folder or sky_{face}.hdr; alone: irradiance "
+                      "maps only");
     command->add_option("--out", options->folder, "result folder: new, empty or an earlier result")->required();
     command->add_option("--threads", options->threads, "threads; 0: one per core")->check(CLI::Range(0, 1024));
     command
         ->add_option("--progress", options->progress,
                      "auto (a bar on a terminal), json (lines on standard output) or none")
         ->check(CLI::IsMember({"auto", "json", "none"}));
-    command->footer(request_flags_help() + "\n" + exit_code_help());
+    command->footer(request_flags_help() + "\n" + command->get_footer());
     command->callback([options, &action] { action = [options] { run(*options); }; });
 }
 

@@ -24,7 +24,7 @@ int main(int argc, char** argv) {
     hairbake::Action action;
     app.set_version_flag("--version", "hairbake " + hairbake::version());
     app.require_subcommand(1);
-    app.footer(hairbake::remote_exit_code_help());
+    app.footer(hairbake::exit_code_help());  // every command inherits it; those that talk to a service have their own
     hairbake::add_bake_command(app, action);
     hairbake::add_info_command(app, action);
     hairbake::add_sample_command(app, action);
@@ -39,6 +39,7 @@ int main(int argc, char** argv) {
     hairbake::add_cancel_command(app, action);
     hairbake::add_rebake_command(app, action);
     hairbake::add_upload_command(app, action);
+    app.footer(hairbake::remote_exit_code_help());
     try {
         app.parse(argc, argv);
         action();

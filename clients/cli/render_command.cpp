@@ -112,7 +112,8 @@ void add_scene_options(CLI::App& command, RenderOptions& options) {
     command.add_option("result", request.result, "result folder; without it give --hair and --env")->type_name("DIR");
     command.add_option("--out", options.files, "NAME.png or NAME.exr; may be given twice")
         ->required()
-        ->type_name("FILE");
+        ->type_name("FILE")
+        ->allow_extra_args(false);
     command.add_option("--hair", request.bake.hair, "hair model; with a result: where its hair is");
     command.add_option("--env", request.bake.environment, "HDR environment; with a result: where its environment is");
     command.add_option("--occluder", request.bake.occluder,

@@ -55,10 +55,8 @@ void warn_of_unused(const RequestFlags& flags, const BakeRequest& request) {
 
 }  // namespace
 
-void add_request_flags(CLI::App& command, RequestFlags& flags) {
-    command.add_option(
-        "--env", flags.environment,
-        "HDR environment: a picture, or a cube's six as a folder or sky_{face}.hdr; alone: irradiance maps only");
+void add_request_flags(CLI::App& command, RequestFlags& flags, const std::string& environment_help) {
+    command.add_option("--env", flags.environment, environment_help);
     command.add_option("--occluder", flags.occluder, "mesh (OBJ) that stops light completely: the head");
     command.add_option("--receiver", flags.receiver, "mesh (OBJ) that the hair's shadow is baked on as well");
     command.add_option("--preset", flags.preset, "draft, final or paper (see hairbake presets)");

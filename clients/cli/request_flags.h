@@ -21,8 +21,9 @@ struct RequestFlags {
     std::vector<std::string> settings;          ///< path=value
 };
 
-/// Adds the flags of everything but the hair; `flags` must live as long as `command` parses.
-void add_request_flags(CLI::App& command, RequestFlags& flags);
+/// Adds the flags of everything but the hair; `flags` must live as long as `command` parses. `environment_help` says
+/// what --env may be there.
+void add_request_flags(CLI::App& command, RequestFlags& flags, const std::string& environment_help);
 
 /// "Later wins: ..." for the help of a command with these flags.
 std::string request_flags_help();

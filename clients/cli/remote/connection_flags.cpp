@@ -62,7 +62,7 @@ void add_connection_flags(CLI::App& command, ConnectionFlags& flags) {
     command
         .add_option("--progress", flags.progress, "auto (a bar on a terminal), json (lines on standard output) or none")
         ->check(CLI::IsMember({"auto", "json", "none"}));
-    command.footer(command.get_footer() + remote_exit_code_help());
+    command.footer(remote_exit_code_help());
 }
 
 ServerOptions server_options(const ConnectionFlags& flags) {

@@ -116,7 +116,8 @@ void add_submit_command(CLI::App& app, Action& action) {
         ->add_option("--hair", options->hairs,
                      "hair model; several make a bake each. Every input is a file, sha256:DIGEST or name:NAME")
         ->allow_extra_args(false);
-    add_request_flags(*command, options->request);
+    add_request_flags(*command, options->request,
+                      "HDR environment, one picture (lat-long, cross or strip); alone: irradiance maps only");
     command->add_option("--priority", options->priority, "-10 to 10: higher ones are baked first")
         ->check(CLI::Range(-10, 10));
     command->add_flag("--wait", options->wait, "until the bake has ended");
@@ -124,9 +125,10 @@ void add_submit_command(CLI::App& app, Action& action) {
         ->add_option("--fetch", options->folder,
                      "wait, then fetch the result into this folder; of several: into DIR/NAME OF THE HAIR")
         ->type_name("DIR");
-    command->footer(request_flags_help() +
-                    "Without --wait it prints one line for each bake: its id, its state, its hair.\n\n");
     add_connection_flags(*command, options->connection);
+    command->footer(request_flags_help() +
+                    "Without --wait it prints one line for each bake: its id, its state, its hair.\n\n" +
+                    command->get_footer());
     command->callback([options, &action] {
         action = [options] { with_json_failures(options->connection.progress, [&] { run(*options); }); };
     });

@@ -15,6 +15,25 @@ TEST(Program, TellsItsVersionAndItsExitCodes) {
     EXPECT_TRUE(contains(hairbake("bake --help").output, "Exit codes"));
 }
 
+TEST(Program, EveryCommandsHelpHasItsOwnExitCodesOnce) {
+    // 6 to 9 are of those that talk to a service.
+    const auto count = [](const std::string& text, const std::string& piece) {
+        std::size_t found = 0;
+        for (std::size_t at = text.find(piece); at != std::string::npos; at = text.find(piece, at + 1)) ++found;
+        return found;
+    };
+    for (const std::string local : {"bake", "info", "sample", "compare", "render", "diff", "presets"}) {
+        const std::string help = hairbake(local + " --help").output;
+        EXPECT_EQ(count(help, "Exit codes:"), 1u) << local;
+        EXPECT_FALSE(contains(help, "6  server unreachable")) << local;
+    }
+    for (const std::string remote : {"submit", "status", "wait", "fetch", "cancel", "rebake", "upload"}) {
+        const std::string help = hairbake(remote + " --help").output;
+        EXPECT_EQ(count(help, "Exit codes:"), 1u) << remote;
+        EXPECT_EQ(count(help, "6  server unreachable"), 1u) << remote;
+    }
+}
+
 TEST(SampleCommand, WritesAGroomAHeadAndThreeSkies) {
     const Workshop workshop;
     for (const char* name : {"groom.hair", "head.obj", "sky.hdr", "studio.hdr", "overcast.hdr"})

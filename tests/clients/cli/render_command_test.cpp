@@ -23,6 +23,9 @@ TEST(RenderCommand, ShowsAResultInEveryModeAndDiffComparesThem) {
     EXPECT_GT(report["rmse"], 0);
     EXPECT_EQ(report["height"], 24);
     EXPECT_TRUE(contains(hairbake("diff " + two + " --out " + workshop.path("d.png")).output, "RMSE"));
+    // The folder may stand behind the files, as the usage line has it.
+    const Finished behind = hairbake("render --out " + workshop.path("e.exr") + " " + workshop.path("out") + small);
+    EXPECT_EQ(behind.exit_code, 0) << behind.output;
     EXPECT_TRUE(std::filesystem::exists(workshop.path("d.png")));
 }
 
