@@ -1,7 +1,10 @@
 #include "clients/cli/remote/outcome.h"
 
+#include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <cstdio>
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "clients/cli/messages.h"
@@ -60,8 +63,19 @@ void judge(const ConnectionFlags& flags, const std::vector<EndedBake>& bakes) {
                                 (failed ? "failed" : "were cancelled"));
 }
 
-void tell_how_to_go_on(const ServerOptions& options, const std::string& which) {
-    const std::string rest = which + " --server " + options.url;
+/// As a shell reads it back.
+std::string quoted(const std::string& word) {
+    const auto plain = [](unsigned char c) { return std::isalnum(c) || std::strchr("_-./:@%+=,", c); };
+    if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
+    std::string text = "'";
+    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return text + "'";
+}
+
+void tell_how_to_go_on(const ConnectionFlags& flags, const ServerOptions& options, const std::string& which) {
+    std::string rest = which + " --server " + quoted(options.url);
+    if (!flags.token_file.empty()) rest += " --token-file " + quoted(flags.token_file);
+    if (!flags.ca_file.empty()) rest += " --ca-file " + quoted(flags.ca_file);
     say_note("the server goes on baking; \"hairbake wait " + rest + "\" waits again. \"hairbake cancel " + rest +
              "\" cancels it.");
 }
@@ -95,7 +109,7 @@ void await_bakes(const ConnectionFlags& flags, const ServerOptions& options, con
             }
         });
     } catch (const Error& error) {
-        if (!ended && error.kind() == ErrorKind::cancelled) tell_how_to_go_on(options, awaited.which);
+        if (!ended && error.kind() == ErrorKind::cancelled) tell_how_to_go_on(flags, options, awaited.which);
         throw;
     }
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();

@@ -7,6 +7,7 @@
 #include "clients/cli/messages.h"
 #include "clients/cli/remote/outcome.h"
 #include "clients/cli/remote/upload.h"
+#include "core/base/json_nesting.h"
 
 namespace hairbake {
 namespace {
@@ -38,6 +39,7 @@ void check(const RebakeOptions& options) {
     if (sources != 1)
         throw Error(ErrorKind::usage, "exactly one of --bake, --replaces, --name and --model says what to bake again",
                     "bakes");
+    check_nesting(options.irradiance, "irradiance", ErrorKind::usage, "irradiance");
     if (!options.irradiance.empty() && !Json::parse(options.irradiance, nullptr, false).is_object())
         throw Error(ErrorKind::usage, "irradiance is " + options.irradiance + "; allowed is a JSON object",
                     "irradiance");

@@ -152,13 +152,15 @@ std::uint64_t send_file(Server& server, const std::string& path, const std::stri
 
 void InputFiles::add(const std::string& value, const std::string& field) {
     if (is_reference(value)) return;
-    if (fs::is_directory(value) || (field == "environment" && value.find("{face}") != std::string::npos))
+    std::error_code error;
+    const bool folder = fs::is_directory(value, error);
+    if (field == "environment" && (folder || value.find("{face}") != std::string::npos))
         throw Error(ErrorKind::usage,
                     field + " is " + value +
                         ", a cube of six files; the service takes one file: a cross, a strip or a " +
                         "lat-long picture",
                     field);
-    std::error_code error;
+    if (folder) throw Error(ErrorKind::usage, field + " is " + value + ", a folder; allowed is a file", field);
     const std::uint64_t bytes = fs::file_size(value, error);
     if (error) throw Error(ErrorKind::bad_input, value + ": " + error.message(), field);
     files_[value] = {"", field, bytes};

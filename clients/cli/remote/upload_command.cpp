@@ -20,7 +20,7 @@ struct UploadOptions {
 /// "stage1/sunset" is one path of several words.
 bool is_name(const std::string& name) {
     const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '.' || c == '_' || c == '-' || c == '/'; };
-    return !name.empty() && name.size() <= 512 && std::all_of(name.begin(), name.end(), fits);
+    return !name.empty() && name.size() <= 200 && std::all_of(name.begin(), name.end(), fits);
 }
 
 void check(const UploadOptions& options) {
@@ -28,7 +28,8 @@ void check(const UploadOptions& options) {
     if (options.files.size() != 1 || options.kind.empty())
         throw Error(ErrorKind::usage, "--name goes with one file and --as", "name");
     if (!is_name(options.name))
-        throw Error(ErrorKind::usage, "name is " + options.name + "; allowed are letters, digits and . _ - /", "name");
+        throw Error(ErrorKind::usage, "name is " + options.name + "; allowed are up to 200 letters, digits and . _ - /",
+                    "name");
 }
 
 void run(const UploadOptions& options) {

@@ -4,6 +4,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import shlex
 import signal
 import sys
 from pathlib import Path
@@ -52,7 +53,7 @@ def set_field(request: Dict[str, Any], setting: str) -> None:
         raise UsageError(f"--set {setting} is not of the form path=value", "set")
     try:
         parsed = json.loads(value)
-    except ValueError:
+    except (ValueError, RecursionError):
         parsed = value
     *blocks, last = path.split(".")
     for block in blocks:
@@ -68,7 +69,7 @@ def make_request(arguments: Arguments) -> Dict[str, Any]:
     if arguments.request:
         try:
             request = json.loads(Path(arguments.request).read_text(encoding="utf-8"))
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, RecursionError) as error:
             raise HairbakeError(f"{arguments.request}: {error}", "request") from error
         if not isinstance(request, dict):
             raise UsageError(f"{arguments.request} holds no JSON object", "request")
@@ -108,12 +109,14 @@ def tell_ended(client: Client, display: Display, bakes: List[Bake], folder_of: C
         raise BakeCancelled(words + "were cancelled")
 
 
-def wait_for(client: Client, which: List[str], wait: Callable[[], List[Bake]], server: str) -> List[Bake]:
+def wait_for(arguments: Arguments, which: List[str], wait: Callable[[], List[Bake]]) -> List[Bake]:
     """When it is interrupted, it says how to go on."""
     try:
         return wait()
     except KeyboardInterrupt:
-        rest = " ".join([*which, "--server", server])
+        given = [("--server", arguments.server), ("--token-file", arguments.token_file),
+                 ("--ca-file", arguments.ca_file)]
+        rest = shlex.join([*which, *(word for flag, value in given if value for word in (flag, value))])
         print(f'\nhairbake: the server goes on baking; "python3 -m hairbake wait {rest}" waits again. '
               f'"python3 -m hairbake cancel {rest}" cancels it.', file=sys.stderr)
         raise
@@ -136,13 +139,19 @@ def submit(client: Client, arguments: Arguments, display: Display) -> None:
             display.line(f"{bake.id} {bake.state} {hair or ''}".rstrip(), "submitted", id=bake.id, state=bake.state)
     if arguments.wait or targets:
         folders = dict(zip([bake.id for bake in bakes], targets))
-        ended = wait_for(client, list(dict.fromkeys(bake.id for bake in bakes)), lambda: client.wait_ended(bakes),
-                         arguments.server)
+        ended = wait_for(arguments, list(dict.fromkeys(bake.id for bake in bakes)), lambda: client.wait_ended(bakes))
         tell_ended(client, display, ended, folders.get)
 
 
 def status(client: Client, arguments: Arguments, display: Display) -> None:
-    for bake in [client.status(id) for id in arguments.id] or client.list()[:20]:
+    if arguments.batch:
+        batch = client.batch(arguments.batch)
+        counts = ", ".join(f"{count} {state}" for state, count in batch.states.items() if count)
+        display.line(f"{batch.id}: {counts}", "status", batch=batch.id, bakes=batch.bakes, states=batch.states)
+    bakes = [client.status(id) for id in arguments.id]
+    if not bakes and not arguments.batch:
+        bakes = client.list(newest=20, **({"state": arguments.state} if arguments.state else {}))
+    for bake in bakes:
         percent = f" {100 * bake.fraction:.0f} %" if bake.state == "running" else ""
         display.line(f"{bake.id} {bake.state}{percent} {bake.message}".rstrip(), "status", bake=bake.view)
 
@@ -151,8 +160,8 @@ def wait(client: Client, arguments: Arguments, display: Display) -> None:
     if bool(arguments.id) == bool(arguments.batch):
         raise UsageError("wait needs ids of bakes, or --batch")
     which = arguments.id or ["--batch", arguments.batch]
-    ended = wait_for(client, which, lambda: client.wait_ended(arguments.id) if arguments.id
-                     else client.wait_batch(arguments.batch), arguments.server)
+    ended = wait_for(arguments, which, lambda: client.wait_ended(arguments.id) if arguments.id
+                     else client.wait_batch(arguments.batch))
     tell_ended(client, display, ended, lambda bake: None)
 
 
@@ -181,7 +190,7 @@ def rebake(client: Client, arguments: Arguments, display: Display) -> None:
     if arguments.irradiance:
         try:
             which["irradiance"] = dict(json.loads(arguments.irradiance))
-        except (ValueError, TypeError) as error:
+        except (ValueError, TypeError, RecursionError) as error:
             raise UsageError(f"irradiance is {arguments.irradiance}; allowed is a JSON object", "irradiance") from error
     if arguments.dry_run:
         forecast = client.rebake_forecast(arguments.environment, **which)
@@ -191,7 +200,7 @@ def rebake(client: Client, arguments: Arguments, display: Display) -> None:
     if not waiting or display.json:
         display.line(f"{batch.id} {batch.bakes} bakes", "submitted", id=batch.id, bakes=batch.bakes)
     if waiting:
-        ended = wait_for(client, ["--batch", batch.id], lambda: client.wait_batch(batch), arguments.server)
+        ended = wait_for(arguments, ["--batch", batch.id], lambda: client.wait_batch(batch))
         tell_ended(client, display, ended, lambda bake: Path(arguments.fetch, bake) if arguments.fetch else None)
 
 
@@ -234,7 +243,11 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--outputs", help="npy,exr,hair ...")
     made.add_argument("--set", action="append", default=[], metavar="PATH=VALUE",
                       help="e.g. transmittance.method=trace")
-    command(status, "tell how bakes are doing").add_argument("id", nargs="*")
+    made = command(status, "tell how bakes are doing")
+    made.add_argument("id", nargs="*", help="without: the 20 newest")
+    made.add_argument("--batch", help="counts of a batch")
+    made.add_argument("--state", choices=("queued", "running", "done", "failed", "cancelled"),
+                      help="of the newest, only those that are so")
     for run, words in ((wait, "wait until bakes have ended"), (cancel, "cancel bakes")):
         made = command(run, words)
         made.add_argument("id", nargs="*")

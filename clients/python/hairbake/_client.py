@@ -117,8 +117,9 @@ class Client:
         if kind in ("model", "environment"):
             self._http.json("POST", f"/v1/{kind}s", digest)
         if name:
-            if kind not in ("model", "environment", "mesh") or not re.fullmatch(r"[0-9A-Za-z._/-]{1,512}", name):
-                raise UsageError(f"name is {name!r}; allowed are letters, digits and . _ - / with a kind", "name")
+            if kind not in ("model", "environment", "mesh") or not re.fullmatch(r"[0-9A-Za-z._/-]{1,200}", name):
+                raise UsageError(f"name is {name!r}; allowed are up to 200 letters, digits and . _ - / with "
+                                 "a kind", "name")
             self._http.json("PUT", f"/v1/names/{kind}/{name}", {**digest, "note": note})
         return reference
 
@@ -137,18 +138,19 @@ class Client:
     def status(self, bake: BakeOrId) -> Bake:
         return _bake(self._http.json("GET", f"/v1/bakes/{_id(bake)}"))
 
-    def list(self, **filters: str) -> List[Bake]:
-        """All bakes of the filters state, model, environment, name and batch, newest first."""
+    def list(self, newest: Optional[int] = None, **filters: str) -> List[Bake]:
+        """All bakes of the filters state, model, environment, name and batch, newest first; `newest`: so many of
+        them, up to 1,000."""
         query = "&".join(f"{name}={_plain_filter(value)}" for name, value in filters.items())
         bakes: List[Bake] = []
         cursor = ""
         while True:
-            page = self._http.json("GET", f"/v1/bakes?limit=1000&{query}{cursor}")
+            page = self._http.json("GET", f"/v1/bakes?limit={newest or 1000}&{query}{cursor}")
             views = page.get("bakes")
             if not isinstance(views, list):
                 raise Refused("the server's answer is no list of bakes")
             bakes += [_bake(view) for view in views]
-            if page.get("next") is None:
+            if newest or page.get("next") is None:
                 return bakes
             cursor = f"&cursor={identifier(page['next'], 'cursor')}"
 

@@ -68,6 +68,8 @@ class Jobs:
         self.assertIn(f"{bake} done", self.run_ok("wait", bake, url=daemon.url).out)
         self.assertIn(f"{bake} done", self.run_ok("status", bake, url=daemon.url).out)
         self.assertIn(f"{bake} done", self.run_ok("status", url=daemon.url).out)
+        self.assertIn(f"{bake} done", self.run_ok("status", "--state", "done", url=daemon.url).out)
+        self.assertEqual(self.run_ok("status", "--state", "failed", url=daemon.url).out, "")
         self.run_ok("fetch", bake, "--out", "out", url=daemon.url)
         self.assertIn("transmittance.npy", self.shop.files("out"))
         self.assertEqual(daemon.ask("GET", f"/v1/bakes/{bake}").json["priority"], 3)
@@ -125,14 +127,16 @@ class Jobs:
         slow = [word for setting in ("transmittance.method=trace", "transmittance.directions=4096",
                                      "transmittance.direction_set=random") for word in ("--set", setting)]
         with Proxy(daemon) as proxy:
-            process = self.shop.start("submit", "--hair", hair, *slow, "--wait", url=proxy.url)
+            self.shop.write("our certificates.pem", b"")  # not read for http
+            process = self.shop.start("submit", "--hair", hair, *slow, "--wait", "--ca-file", "our certificates.pem",
+                                      url=proxy.url)
             until(lambda: any(head.startswith("GET /v1/bakes/") for head in proxy.heads), "a poll")
             bake = daemon.ask("GET", "/v1/bakes").json["bakes"][0]["id"]
             process.send_signal(signal.SIGINT)
             done = self.shop.end(process)
         self.assertEqual(done.code, 5, done)
-        self.assertIn(f"hairbake wait {bake} --server {proxy.url}", done.err)
-        self.assertIn(f"hairbake cancel {bake} --server {proxy.url}", done.err)
+        for command in ("wait", "cancel"):
+            self.assertIn(f"hairbake {command} {bake} --server {proxy.url} --ca-file 'our certificates.pem'", done.err)
         self.assertIn(daemon.ask("GET", f"/v1/bakes/{bake}").json["state"], ("queued", "running"))
         self.run_ok("cancel", bake, url=daemon.url)
 
@@ -153,6 +157,7 @@ class Jobs:
         views = [daemon.ask("GET", f"/v1/bakes/{id}").json for id in (bake, again)]
         self.assertEqual(views[0]["stages"][0], views[1]["stages"][0])  # its attempts too: it ran once
         batch = first_word(self.run_ok("rebake", "--env", dusk, "--bake", bake, url=daemon.url).out)
+        self.assertEqual(self.run_ok("status", "--batch", batch, url=daemon.url).out, f"{batch}: 1 done\n")
         self.assertIn(f"{again} done", self.run_ok("wait", "--batch", batch, url=daemon.url).out)
 
     def test_names(self):
@@ -174,6 +179,8 @@ class Refusals:
                 (3, ["submit", "--hair", "nothing.hair"], "nothing.hair"),
                 (2, ["submit", "--hair", self.hair, "--env", str(self.shop.path)], "one file"
                     if self.command is NATIVE else "single files"),
+                (2, ["submit", "--hair", str(self.shop.path)], "a folder"),
+                (2, ["rebake", "--env", self.sky, "--bake", "0" * 64, "--irradiance", 60_000 * "["], "irradiance"),
                 (7, ["submit", "--hair", "name:nobody/knows"], "hair"),
                 (7, ["submit", "--hair", "sha256:" + "0" * 64], "which is not stored"),
                 (7, ["wait", "0" * 64], "there is no bake"),
