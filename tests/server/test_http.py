@@ -93,6 +93,40 @@ class Rim(unittest.TestCase):
                     self.assertLessEqual({"400", "411", "413"} | ({"415"} if types else set()), set(operation["responses"]), pattern)
         self.assertEqual(described, found)
 
+    def test_lists_and_names_answer_what_the_document_says(self):
+        d = self.daemon
+        hair = d.put(hair_bytes())
+        d.ask("POST", "/v1/models", {"sha256": hair})
+        d.ask("PUT", "/v1/names/model/hero", {"sha256": hair, "note": "first"})
+        d.wait(d.ask("POST", "/v1/bakes", quick_request(hair)).json["id"])
+        schemas = d.ask("GET", "/openapi.json").json["components"]["schemas"]
+
+        def parts_of(name):
+            """Required and all fields of a schema, those that it takes over too."""
+            schema = schemas[name]
+            required, fields = set(schema.get("required", [])), dict(schema.get("properties", {}))
+            for part in schema.get("allOf", []):
+                more = parts_of(part["$ref"].rpartition("/")[2]) if "$ref" in part else (set(part["required"]), part["properties"])
+                required |= more[0]
+                fields.update(more[1])
+            return required, fields
+
+        def check(value, name):
+            required, fields = parts_of(name)
+            self.assertLessEqual(required, set(value), name)
+            self.assertLessEqual(set(value), set(fields), name)
+            for field, schema in fields.items():
+                item = schema.get("items", {}).get("$ref", "").rpartition("/")[2]
+                if item:
+                    self.assertTrue(value[field], name)  # at least one, so that something was checked
+                    for entry in value[field]:
+                        check(entry, item)
+
+        for path, name in (("/v1/bakes", "BakePage"), ("/v1/models", "ModelPage"), ("/v1/names/model", "NamePage"),
+                           ("/v1/names/model/hero", "Name")):
+            check(d.ask("GET", path).json, name)
+        check(d.ask("GET", d.ask("GET", "/v1/bakes").json["bakes"][0]["links"]["self"]).json, "Bake")
+
     def test_every_route_has_rule_limit_and_problem(self):
         d = self.daemon
         document = d.ask("GET", "/openapi.json").json
@@ -266,7 +300,7 @@ class Tokens(unittest.TestCase):
         self.assertIn(f'sha256 = "{sha256(token.encode())}"', lines)
         again = subprocess.run([PROGRAMS / "hairbaked", "token", "new"], check=True, capture_output=True, text=True).stdout
         self.assertNotIn(token, again)
-        with Daemon(tokens=lines.replace('name = ""', 'name = "farm"')) as d:
+        with Daemon(tokens=lines.replace('name = "unnamed"', 'name = "farm"')) as d:
             blob = f"/v1/blobs/{sha256(b'x')}"
             self.assertEqual(d.ask("PUT", blob, b"x", {"Authorization": f"Bearer {token}"}).status, 201)
             self.assertEqual(d.ask("GET", blob, headers={"Authorization": f"Bearer {token}"}).status, 200)
