@@ -70,7 +70,7 @@ made=$(inside localhost/hairbake-hairbaked hairbaked token new)
 token=$(sed -n 's/^token (shown only now): //p' <<<"$made")
 {
     cat docker/hairbake.toml
-    sed -n '/^\[\[token\]\]/,$p' <<<"$made" | sed 's/^name = ""/name = "check"/'
+    sed -n '/^\[\[token\]\]/,$p' <<<"$made" | sed 's/^name = "unnamed"/name = "check"/'
 } >"$work/hairbake.toml"
 sed "s/listen 8000 /listen 127.0.0.1:$port /" docker/nginx-site.conf >"$work/site.conf"
 chmod 644 "$work/hairbake.toml" "$work/site.conf"

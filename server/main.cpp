@@ -66,7 +66,7 @@ void set_up_log() {
 int print_new_token() {
     const std::string token = new_token();
     std::printf(
-        "token (shown only now): %s\n\n[[token]]\nname = \"\"\nsha256 = \"%s\"\nscopes = [\"read\", \"upload\", "
+        "token (shown only now): %s\n\n[[token]]\nname = \"unnamed\"\nsha256 = \"%s\"\nscopes = [\"read\", \"upload\", "
         "\"bake\"]\n",
         token.c_str(), Digest().add(token).hex().c_str());
     return 0;

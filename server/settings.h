@@ -39,7 +39,7 @@ struct Settings {
     std::uint64_t memory_bytes = 8ull << 30;
     std::uint64_t cpu_seconds = 4 * 3600;
     double wall_seconds = 2 * 3600;
-    int max_crashes = 5;  ///< deaths without a word after which a stage fails
+    int max_crashes = 5;  ///< how often a stage starts again after a death without a word
     // [web]
     std::optional<std::filesystem::path>
         web;  ///< folder of the page; empty: none; by default what lies beside the daemon
