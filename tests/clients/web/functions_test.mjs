@@ -12,6 +12,7 @@ import {
 } from '../../../clients/web/app/bake/request.js';
 import { defaults_of, faults, fields_of, range_words } from '../../../clients/web/app/bake/schema.js';
 import { warnings } from '../../../clients/web/app/input_facts.js';
+import { wait_ms_of } from '../../../clients/web/app/patience.js';
 import {
     face_direction,
     latlong_direction,
@@ -206,4 +207,13 @@ test('a request asks by the first name of a file, by the chosen one, or by diges
     assert.equal(reference_to({ id: 'abc', by: 'name:gone' }, names), 'name:stage/dawn');
     assert.equal(reference_to({ id: 'abc', by: '' }, names), 'sha256:abc');
     assert.equal(reference_to({ id: 'def' }, names), 'sha256:def');
+});
+
+test('Retry-After is read in seconds and as a date, and no wait is longer than two minutes', () => {
+    assert.deepEqual([null, '', 'soon', '0', '-5'].map(wait_ms_of), [0, 0, 0, 0, 0]);
+    assert.equal(wait_ms_of('60'), 60_000);
+    assert.equal(wait_ms_of('999999'), 120_000);
+    const wait = wait_ms_of(new Date(Date.now() + 30_000).toUTCString()); // in whole seconds
+    assert.ok(wait > 20_000 && wait <= 30_000, `${wait} ms`);
+    assert.equal(wait_ms_of('Wed, 21 Oct 2015 07:28:00 GMT'), 0);
 });

@@ -87,6 +87,21 @@ async function send_slowly(page, file) {
     await page.waitForFunction(() => document.querySelector('.job[data-phase=sending] progress')?.value > 0.15);
 }
 
+/** Points a name of the daemon at a file. */
+const put_name = (kind, path, digest) =>
+    daemon.json(`/v1/names/${kind}/${path}`, {
+        method: 'PUT',
+        headers: { 'Content-Type': 'application/json' },
+        body: JSON.stringify({ sha256: digest }),
+    });
+
+/** The sample's groom with other words in the 88 bytes of "info" of a HAIR header: a file that the service lacks. */
+function groom_with(words) {
+    const bytes = Buffer.from(readFileSync(join(sample, 'groom.hair')));
+    bytes.write(`${words}\0`, 40);
+    return bytes;
+}
+
 async function assert_stored(file) {
     const digest = sha256(readFileSync(file));
     const reply = await fetch(`${daemon.address}/v1/models/${digest}`);
@@ -118,6 +133,69 @@ test('an upload goes on after the connection was cut', async () => {
         await page.locator('.job[data-phase=stored]').waitFor();
         assert.ok(offsets.length > begun && offsets.at(-1) > 0, `PATCH requests began at ${offsets}`);
         await assert_stored(file);
+    });
+});
+
+const turned_away = (detail, wait_s) => ({
+    status: 429,
+    headers: { 'Retry-After': String(wait_s) },
+    contentType: 'application/problem+json',
+    json: { detail },
+});
+
+test('an upload that is turned away for now waits as long as it is told, and goes on where it was', async () => {
+    const file = large_groom(16);
+    const words = 'more requests or uploads at once than allowed';
+    await with_page(daemon.address, async page => {
+        const offsets = watch_patches(page);
+        const once = new Map(); // each kind of question is turned away the first time; a PATCH, the second piece
+        await page.route(/\/v1\/(blobs|uploads|models)/, route => {
+            const request = route.request();
+            const kind = `${request.method()} ${new URL(request.url()).pathname.split('/')[2]}`;
+            const is_first_piece = Number(request.headers()['upload-offset']) === 0;
+            if (request.method() === 'GET' || is_first_piece || once.has(kind)) return route.continue();
+            once.set(kind, Date.now());
+            return route.fulfill(turned_away(words, kind === 'PATCH uploads' ? 2 : 0));
+        });
+        const asked_on = page.waitForRequest(request => request.method() === 'HEAD' && /uploads/.test(request.url()));
+        await page.goto(`${daemon.address}/#/models`);
+        await page.locator('.drop-zone input[type=file]').setInputFiles(file);
+        await page.getByText(`The service is asked again: ${words}`).waitFor();
+        await asked_on;
+        const waited_ms = Date.now() - once.get('PATCH uploads');
+        assert.ok(waited_ms >= 2000, `it was asked again after ${waited_ms} ms`);
+        await page.locator('.job[data-phase=stored]').waitFor();
+        assert.deepEqual(
+            [...once.keys()],
+            ['HEAD blobs', 'POST uploads', 'PATCH uploads', 'HEAD uploads', 'POST models'],
+        );
+        assert.equal(offsets.filter(offset => offset === 0).length, 1, `PATCH requests began at ${offsets}`);
+        await assert_stored(file);
+    });
+});
+
+test('a file that is turned away again and again is told of and kept', async () => {
+    const words = 'there are 256 unfinished uploads of this token; allowed are 256: finish some or delete them';
+    const bytes = groom_with('turned away');
+    await with_page(daemon.address, async page => {
+        let tries = 0;
+        await page.route('**/v1/uploads', route => {
+            ++tries;
+            return route.fulfill(turned_away(words, 60));
+        });
+        await page.addInitScript(() => {
+            const wait = setTimeout;
+            globalThis.setTimeout = (act, ms) => wait(act, Math.min(ms, 20)); // minutes in all
+        });
+        await page.goto(`${daemon.address}/#/models`);
+        const file = { name: 'away.hair', mimeType: '', buffer: bytes };
+        await page.locator('.drop-zone input[type=file]').setInputFiles(file);
+        await page.locator('.job[data-phase=failed] [role=alert]', { hasText: words }).waitFor();
+        assert.equal(tries, 11); // after each of ten pauses, and at first
+        await page.unrouteAll({ behavior: 'wait' });
+        await page.reload(); // which goes on with what is kept
+        await page.locator('.job[data-phase=stored]').waitFor();
+        assert.equal((await fetch(`${daemon.address}/v1/models/${sha256(bytes)}`)).status, 200);
     });
 });
 
@@ -171,9 +249,8 @@ test('hostile names are text', async () => {
 });
 
 test('a hair model that calls itself a script is text', async () => {
-    const bytes = Buffer.from(readFileSync(join(sample, 'groom.hair')));
     const info = '<script>alert(1)</script>';
-    bytes.write(info + '\0', 40); // the 88 bytes of "info" of a HAIR header
+    const bytes = groom_with(info);
     await with_page(daemon.address, async page => {
         page.on('dialog', () => assert.fail('a script of a model ran'));
         await page.goto(`${daemon.address}/#/models`);
@@ -519,8 +596,7 @@ test('a second tab leaves an upload to the first one until that is closed', asyn
 });
 
 test('a file is sent also where the browser has no room to remember it', async () => {
-    const bytes = Buffer.from(readFileSync(join(sample, 'groom.hair')));
-    bytes.write('one more groom\0', 40); // in the 88 bytes of "info" of a HAIR header
+    const bytes = groom_with('one more groom');
     await with_page(daemon.address, async page => {
         await page.goto(`${daemon.address}/#/models`);
         await page.evaluate(() => {
