@@ -6,6 +6,7 @@
 //   api is that of app/api.js: its failures are Errors in words, with the status (0: no answer).
 //
 // What it holds on the card, its loop and what it is fetching end when it is unmounted.
+import { request_by_names } from '../app/bake/by_names.js';
 import { html, useEffect, useRef, useState } from '../vendor/preact.js';
 import { BakeOrder } from './bake_order.js';
 import { load_bake } from './bake_files.js';
@@ -101,7 +102,8 @@ export function ViewerPage({ left, right, api, words = bake => bake.id.slice(0, 
                     <fieldset>
                         <legend>Bake this lighting</legend>
                         <${BakeOrder} api=${api} old=${edited.id} label="Bake this lighting"
-                            disabled=${!is_edited(edit)} request=${() => compose_request(edited.request, edit)}
+                            disabled=${!is_edited(edit)}
+                            request=${() => compose_request(request_by_names(edited), edit)}
                             on_asked=${id => orders.current.set(id, edit)} />
                         <button type="button" class="secondary" disabled=${!is_edited(edit)}
                             onClick=${() => set_edit(no_edit())}>

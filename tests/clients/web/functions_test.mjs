@@ -2,6 +2,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
 import { test } from 'node:test';
+import { request_by_names } from '../../../clients/web/app/bake/by_names.js';
 import {
     build_request,
     differences,
@@ -207,6 +208,13 @@ test('a request asks by the first name of a file, by the chosen one, or by diges
     assert.equal(reference_to({ id: 'abc', by: 'name:gone' }, names), 'name:stage/dawn');
     assert.equal(reference_to({ id: 'abc', by: '' }, names), 'sha256:abc');
     assert.equal(reference_to({ id: 'def' }, names), 'sha256:def');
+});
+
+test('the request of a bake names what it was asked by, in the version that it had', () => {
+    const request = { hair: 'sha256:a', environment: 'sha256:b', occluder: null, outputs: ['raw'] };
+    const names = { environment: { path: 'stage/dawn', version: 2 } };
+    assert.deepEqual(request_by_names({ request, names }), { ...request, environment: 'name:stage/dawn@2' });
+    assert.deepEqual(request_by_names({ request, names: {} }), request);
 });
 
 test('Retry-After is read in seconds and as a date, and no wait is longer than two minutes', () => {

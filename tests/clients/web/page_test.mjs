@@ -313,8 +313,11 @@ test('a mesh is sent, gets a name and a new version, and what followed the old o
         await page.getByRole('link', { name: 'heads/round' }).click();
         await page.getByText('0 bakes asked for this name').waitFor();
         const { request } = await daemon.json(`/v1/bakes/${bake}`);
-        const { id } = await daemon.post('/v1/bakes', { ...request, occluder: 'name:heads/round' });
+        await put_name('environment', 'stage/still', sky);
+        const by_names = { environment: 'name:stage/still', occluder: 'name:heads/round' };
+        const { id } = await daemon.post('/v1/bakes', { ...request, ...by_names });
         await daemon.finished(id);
+        await put_name('environment', 'stage/still', await daemon.add('environment', join(sample, 'studio.hdr')));
         await page.goto(`${daemon.address}/#/meshes`);
         await send_and_name(other, 'heads/round');
         await page.getByRole('cell', { name: '2', exact: true }).waitFor();
@@ -324,6 +327,10 @@ test('a mesh is sent, gets a name and a new version, and what followed the old o
         await page.getByRole('heading', { name: 'Bakes' }).waitFor();
         const { bakes } = await daemon.json('/v1/bakes?name=heads%2Fround');
         assert.deepEqual(bakes.map(one => one.names.occluder.version).sort(), [1, 2]);
+        for (const { environment, names } of bakes) {
+            assert.equal(environment, sky); // only the mesh is another
+            assert.deepEqual(names.environment, { path: 'stage/still', version: 1 });
+        }
     });
 });
 

@@ -71,11 +71,16 @@ before(async () => {
         hair = ball_of_hair(random);
     const maps = (count, exponent = 64, scale = 1) => random_maps(random, 8, count, { scale, exponent }).files;
     const request = { irradiance: { rotation_deg: [0, 30, 0], exposure_stops: 1, tint: [1, 1, 1], lights: [] } };
+    const names = { environment: { path: 'stage/dawn', version: 2 } };
     const bakes = bake_service({
-        first: { files: { ...hair, ...maps(34) }, request },
+        first: { files: { ...hair, ...maps(34) }, request, names },
         second: { files: { ...hair, ...maps(10, 20) }, request: { irradiance: { rotation_deg: [0, 10, 0] } } },
         dim: { files: { ...hair, ...maps(10, 64, 2 ** -20) } },
-        unread: { files: { 'transmittance.npy': Buffer.alloc(1) }, request: { ...request, outputs: ['npy'] } },
+        unread: {
+            files: { 'transmittance.npy': Buffer.alloc(1) },
+            request: { ...request, outputs: ['npy'] },
+            names: { hair: { path: 'heads/curly', version: 1 } },
+        },
         bald: { files: { ...hair, ...maps(34) }, request: { hair: null } },
         broken: { files: { ...hair, ...maps(34), 'strands.bin': Buffer.alloc(100) } },
     });
@@ -219,7 +224,7 @@ test('The edited lighting is shown at once and baked as a request: turned, expos
     assert.deepEqual(posted, [
         {
             hair: 'sha256:0',
-            environment: 'sha256:1',
+            environment: 'name:stage/dawn@2', // as which the old bake was asked for
             outputs: ['raw'],
             irradiance: {
                 rotation_deg: [0, 90, 0],
@@ -336,6 +341,7 @@ test('A bake without the output raw says what to ask for, and asks for it', asyn
     await page.getByRole('button', { name: 'Bake it with "raw"' }).click();
     await page.getByRole('link', { name: 'open the new bake' }).waitFor();
     assert.deepEqual(posted[0].outputs, ['npy', 'raw']);
+    assert.equal(posted[0].hair, 'name:heads/curly@1');
 });
 
 test('A bake without hair and one whose files do not fit together are told of in words', async () => {

@@ -1,6 +1,7 @@
 // A name with its versions: a new one, what followed the old ones, and baking that again.
 import { html, useMemo, useState } from '../../vendor/preact.js';
 import { BakeTable } from '../bake/bake_table.js';
+import { request_by_names } from '../bake/by_names.js';
 import { Rebake } from '../bake/rebake.js';
 import { name_address, use_inputs } from '../gallery.js';
 import { use_app, use_json, use_list } from '../hooks.js';
@@ -62,8 +63,8 @@ function BakeAgain({ name, bakes }) {
     const again = async () => {
         try {
             for (const bake of bakes) {
-                const { request } = await api.json(`/v1/bakes/${bake.id}`);
-                const newest = asked_by(bake, name).map(field => [field, `name:${name.path}`]);
+                const request = request_by_names(await api.json(`/v1/bakes/${bake.id}`));
+                const newest = asked_by(bake, name).map(field => [field, `name:${name.path}@${name.version}`]);
                 await api.post('/v1/bakes', { ...request, ...Object.fromEntries(newest) });
             }
             announce(`${count_words(bakes.length, 'bake')} asked for.`);
