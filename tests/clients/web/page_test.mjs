@@ -507,6 +507,29 @@ test('a bake asked for in the form by name follows the name to its new version',
     });
 });
 
+test('the form asks again after a refusal, which may have passed', async () => {
+    const refusal = { detail: 'hair is not stored; send it first', field: 'hair' };
+    await with_page(daemon.address, async page => {
+        let asked = 0;
+        await page.route('**/v1/bakes', route => {
+            if (++asked > 2) return route.fulfill({ status: 202, json: { id: bake, state: 'queued' } });
+            return route.fulfill({ status: 422, contentType: 'application/problem+json', json: refusal });
+        });
+        await open_form(page, `?environment=${sky}&hair=${groom}`);
+        const bake_button = page.getByRole('button', { name: 'Bake', exact: true });
+        const problem = page.locator('#fault-hair', { hasText: refusal.detail });
+        await bake_button.click();
+        await problem.waitFor();
+        await page.getByLabel('Preset').selectOption('draft');
+        await problem.waitFor({ state: 'detached' });
+        await bake_button.click();
+        await problem.waitFor();
+        await bake_button.click();
+        await page.waitForURL(new RegExp(`#/bakes/${bake}$`));
+        assert.equal(asked, 3);
+    });
+});
+
 test('a bake does not begin before its mesh is sent', async () => {
     const file = join(sample, 'large.obj');
     writeFileSync(file, `${readFileSync(join(sample, 'head.obj'), 'utf8')}\n${'# room\n'.repeat(2e6)}`);

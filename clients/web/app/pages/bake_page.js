@@ -67,6 +67,16 @@ function fault_of(wrong, path) {
     return found && { words: wrong[found], place: found.slice(own.length + 1) };
 }
 
+/** What this page finds wrong by itself, by field: words. `waits`: by field, the file that is not there yet. */
+function faults_of_form(schema, request, waits) {
+    const wrong = Object.fromEntries(
+        faults(schema, request).map(({ path, words }) => [path, `${title_words(path)} ${words}.`]),
+    );
+    if (!request.hair && !request.environment) wrong.hair = 'A hair model, an environment, or one of each is needed.';
+    for (const [name, words] of Object.entries(waits)) if (words) wrong[name] = words;
+    return wrong;
+}
+
 function Presets({ presets, value, on_change }) {
     const chosen = presets.find(({ name }) => name === value);
     return html`<div class="field"><label for="preset">Preset</label>
@@ -101,11 +111,8 @@ function Form({ schema, presets, query }) {
         environment: reference_to(environment, environments.names),
     };
     const request = build_request(schema, values);
-    const wrong = Object.fromEntries(
-        faults(schema, request).map(({ path, words }) => [path, `${title_words(path)} ${words}.`]),
-    );
-    if (!values.hair && !values.environment) wrong.hair = 'A hair model, an environment, or one of each is needed.';
-    for (const [name, words] of Object.entries(waits)) if (words) wrong[name] = words;
+    const own_faults = faults_of_form(schema, request, waits);
+    const wrong = { ...own_faults };
     if (problem?.field) wrong[problem.field.replaceAll(/\[(\d+)\]/g, '.$1')] = problem.message;
     const change = (path, value) => {
         set_problem(null);
@@ -117,6 +124,7 @@ function Form({ schema, presets, query }) {
     };
     const take_preset = name => {
         const fresh = merged(start, presets.find(one => one.name === name)?.request ?? {});
+        set_problem(null);
         const { occluder, receiver, outputs } = settings;
         set_preset(name);
         set_base(fresh);
@@ -126,7 +134,8 @@ function Form({ schema, presets, query }) {
     const submit = async event => {
         event.preventDefault();
         set_asked(true);
-        const count = Object.keys(wrong).length;
+        set_problem(null); // what the service refused may be there by now: it is asked again
+        const count = Object.keys(own_faults).length;
         if (count) {
             announce(`${count_words(count, 'field')} to correct.`);
             show_fault();
