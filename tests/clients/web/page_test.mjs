@@ -530,6 +530,27 @@ test('the form asks again after a refusal, which may have passed', async () => {
     });
 });
 
+test('of more bakes than a list holds the first ones are shown, and the service finds the others itself', async () => {
+    await put_name('environment', 'stage/crowd', sky);
+    await put_name('environment', 'stage/crowd', await daemon.add('environment', join(sample, 'studio.hdr')));
+    const { bakes } = await daemon.json('/v1/bakes?state=done&limit=1');
+    const names = { environment: { path: 'stage/crowd', version: 1 } };
+    const crowd = Array.from({ length: 1000 }, (_, i) => ({ ...bakes[0], id: `${i}`.padStart(64, '0'), names }));
+    await with_page(daemon.address, async page => {
+        const asked = [];
+        await page.route('**/v1/bakes?name=*', route => {
+            asked.push(new URL(route.request().url()).searchParams.get('limit'));
+            return route.fulfill({ json: { bakes: crowd, next: '1' } });
+        });
+        const again = page.waitForRequest(request => request.url().includes('/v1/rebakes'));
+        await page.goto(`${daemon.address}/#/names/environment/stage/crowd`);
+        await page.getByText('At least 1,000 bakes asked for this name, 1000 of them for an older version.').waitFor();
+        await page.getByText('Only the first 1,000 are shown').waitFor();
+        assert.deepEqual(asked, ['1000']);
+        assert.deepEqual((await again).postDataJSON(), { environment: 'name:stage/crowd', name: 'stage/crowd' });
+    });
+});
+
 test('a bake does not begin before its mesh is sent', async () => {
     const file = join(sample, 'large.obj');
     writeFileSync(file, `${readFileSync(join(sample, 'head.obj'), 'utf8')}\n${'# room\n'.repeat(2e6)}`);
