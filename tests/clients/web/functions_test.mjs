@@ -8,11 +8,12 @@ import {
     differences,
     first_values,
     merged,
+    names_of,
     reference_to,
     with_value,
 } from '../../../clients/web/app/bake/request.js';
 import { defaults_of, faults, fields_of, range_words } from '../../../clients/web/app/bake/schema.js';
-import { warnings } from '../../../clients/web/app/input_facts.js';
+import { names_by_digest, versions_by_path, warnings } from '../../../clients/web/app/input_facts.js';
 import { wait_ms_of } from '../../../clients/web/app/patience.js';
 import {
     face_direction,
@@ -200,14 +201,20 @@ test('addresses are taken apart, broken ones too', () => {
     assert.deepEqual(read_route(''), { path: [], query: {} });
 });
 
-test('a request asks by the first name of a file, by the chosen one, or by digest', () => {
-    const names = { abc: ['stage/dawn', 'stage/dusk'] };
-    assert.equal(reference_to({ id: '' }, names), null);
-    assert.equal(reference_to({ id: 'abc' }, names), 'name:stage/dawn');
-    assert.equal(reference_to({ id: 'abc', by: 'name:stage/dusk' }, names), 'name:stage/dusk');
-    assert.equal(reference_to({ id: 'abc', by: 'name:gone' }, names), 'name:stage/dawn');
-    assert.equal(reference_to({ id: 'abc', by: '' }, names), 'sha256:abc');
-    assert.equal(reference_to({ id: 'def' }, names), 'sha256:def');
+test('a request asks by the first name of a file in its version, by the chosen one, or by digest', () => {
+    const list = [
+        { path: 'stage/dawn', sha256: 'abc', version: 3 },
+        { path: 'stage/dusk', sha256: 'abc', version: 1 },
+    ];
+    const inputs = { names: names_by_digest(list), versions: versions_by_path(list) };
+    assert.deepEqual(names_of('abc', inputs), ['name:stage/dawn@3', 'name:stage/dusk@1']);
+    assert.deepEqual(names_of('def', inputs), []);
+    assert.equal(reference_to({ id: '' }, inputs), null);
+    assert.equal(reference_to({ id: 'abc' }, inputs), 'name:stage/dawn@3');
+    assert.equal(reference_to({ id: 'abc', by: 'name:stage/dusk@1' }, inputs), 'name:stage/dusk@1');
+    assert.equal(reference_to({ id: 'abc', by: 'name:gone@1' }, inputs), 'name:stage/dawn@3');
+    assert.equal(reference_to({ id: 'abc', by: '' }, inputs), 'sha256:abc');
+    assert.equal(reference_to({ id: 'def' }, inputs), 'sha256:def');
 });
 
 test('the request of a bake names what it was asked by, in the version that it had', () => {

@@ -264,13 +264,7 @@ test('a hair model that calls itself a script is text', async () => {
 });
 
 test('a name gets a new version, shows what followed the old one, and that is baked again in one step', async () => {
-    const put = digest =>
-        daemon.json('/v1/names/environment/stage/sunset', {
-            method: 'PUT',
-            headers: { 'Content-Type': 'application/json' },
-            body: JSON.stringify({ sha256: digest }),
-        });
-    await put(sky);
+    await put_name('environment', 'stage/sunset', sky);
     const { request } = await daemon.json(`/v1/bakes/${bake}`);
     const irradiance = { ...request.irradiance, exponent: 10 }; // a bake of its own: the first one asked by digest
     await daemon.finished(
@@ -492,10 +486,10 @@ test('a bake asked for in the form by name follows the name to its new version',
         await page.locator(`input[type=radio][value="${groom}"]`).check();
         await page.getByLabel('Preset').selectOption('draft');
         const by = page.getByLabel('Environment: asked for by');
-        assert.equal((await request_of_form(page)).environment, 'name:stage/dawn');
+        assert.equal((await request_of_form(page)).environment, 'name:stage/dawn@1');
         await by.selectOption('this file');
         assert.equal((await request_of_form(page)).environment, `sha256:${sky}`);
-        await by.selectOption('name:stage/dawn');
+        await by.selectOption('name:stage/dawn@1');
         await page.getByRole('button', { name: 'Bake', exact: true }).click();
         await page.waitForURL(/#\/bakes\/[0-9a-f]{64}$/);
         await daemon.finished(page.url().split('#/bakes/')[1]);
@@ -504,6 +498,25 @@ test('a bake asked for in the form by name follows the name to its new version',
         await page.getByRole('button', { name: 'Put as version 2' }).click();
         await page.getByText('1 bake asked for this name, 1 of them for an older version.').waitFor();
         await page.getByRole('button', { name: /Bake with the newest version/ }).waitFor();
+    });
+});
+
+test('the form bakes the file that was picked, also where its name has moved on since', async () => {
+    const studio = await daemon.add('environment', join(sample, 'studio.hdr'));
+    await put_name('environment', 'stage/noon', sky);
+    await with_page(daemon.address, async page => {
+        await open_form(page);
+        await page.locator(`input[type=radio][value="${sky}"]`).check();
+        await page.locator(`input[type=radio][value="${groom}"]`).check();
+        await page.getByLabel('Environment: asked for by').selectOption('name:stage/noon@1');
+        await put_name('environment', 'stage/noon', studio);
+        await page.getByRole('button', { name: 'Bake', exact: true }).click();
+        await page.waitForURL(/#\/bakes\/[0-9a-f]{64}$/);
+        const address = `/v1/bakes/${page.url().split('#/bakes/')[1]}`;
+        const { environment, names } = await daemon.json(address);
+        assert.equal(environment, sky);
+        assert.deepEqual(names.environment, { path: 'stage/noon', version: 1 });
+        await daemon.json(address, { method: 'DELETE' });
     });
 });
 

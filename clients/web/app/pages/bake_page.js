@@ -8,6 +8,7 @@ import {
     differences,
     first_values,
     merged,
+    names_of,
     reference_to,
     value_at,
     with_value,
@@ -107,8 +108,8 @@ function Form({ schema, presets, query }) {
 
     const values = {
         ...settings,
-        hair: reference_to(hair, models.names),
-        environment: reference_to(environment, environments.names),
+        hair: reference_to(hair, models),
+        environment: reference_to(environment, environments),
     };
     const request = build_request(schema, values);
     const own_faults = faults_of_form(schema, request, waits);
@@ -154,12 +155,12 @@ function Form({ schema, presets, query }) {
     return html`<form onSubmit=${submit} ref=${form} novalidate>
         <${Picker} kind="model" title="Hair model" inputs=${models} value=${hair.id} none="None: maps alone"
             fault=${visible.hair && 'fault-hair'} on_change=${id => choose(set_hair, { id })} />
-        <${Reference} title="Hair model" paths=${models.names[hair.id]} value=${values.hair}
+        <${Reference} title="Hair model" names=${names_of(hair.id, models)} value=${values.hair}
             on_change=${by => choose(set_hair, { ...hair, by })} />
         <${Picker} kind="environment" title="Environment" inputs=${environments} value=${environment.id}
             none="None: transmittance alone" fault=${visible.environment && 'fault-environment'}
             on_change=${id => choose(set_environment, { id })} />
-        <${Reference} title="Environment" paths=${environments.names[environment.id]} value=${values.environment}
+        <${Reference} title="Environment" names=${names_of(environment.id, environments)} value=${values.environment}
             on_change=${by => choose(set_environment, { ...environment, by })} />
         ${['hair', 'environment'].map(
             name => visible[name] && html`<p class="problem" role="alert" id=${`fault-${name}`}>${visible[name]}</p>`,
