@@ -44,7 +44,7 @@ async function wait_when_turned_away(reply, on_wait, signal) {
     const status = reply.getStatus();
     if (!is_turned_away(status) && status < 500) return;
     const error = Object.assign(new Error(`status ${status}`), { reply });
-    on_wait(words_of(error));
+    if (!signal.aborted) on_wait(words_of(error));
     await pause(wait_ms_of(reply.getHeader('Retry-After')), signal);
     throw error;
 }
