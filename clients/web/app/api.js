@@ -1,11 +1,16 @@
 // Asks the daemon. Every failure becomes a Problem with words for people.
+import { pause, wait_ms_of } from './patience.js';
 
 export class Problem extends Error {
-    /** status 0: the service could not be reached; field: the request's field at fault or ''. */
-    constructor(status, words, field = '') {
+    /**
+     * status 0: the service could not be reached; field: the request's field at fault or ''; wait_ms: when the service
+     * wants to be asked again, 0 where it does not say.
+     */
+    constructor(status, words, { field = '', wait_ms = 0 } = {}) {
         super(words);
         this.status = status;
         this.field = field;
+        this.wait_ms = wait_ms;
     }
 }
 
@@ -16,18 +21,14 @@ async function problem_of(reply) {
     } catch {
         // A proxy's own error page: the status says all there is.
     }
-    return new Problem(reply.status, body.detail || `The service answered ${reply.status}.`, body.field || '');
+    return new Problem(reply.status, body.detail || `The service answered ${reply.status}.`, {
+        field: body.field || '',
+        wait_ms: wait_ms_of(reply.headers.get('Retry-After')),
+    });
 }
 
 // What asking again does not change; all else (a proxy's 429, a daemon that starts anew) passes.
 const final_statuses = new Set([400, 401, 403, 404, 405, 410, 422]);
-
-function pause(milliseconds, signal) {
-    return new Promise(resolve => {
-        const timer = setTimeout(resolve, milliseconds);
-        signal.addEventListener('abort', () => (clearTimeout(timer), resolve()), { once: true });
-    });
-}
 
 /** `on_locked` is called when the daemon demands a token. */
 export function make_api(on_locked) {

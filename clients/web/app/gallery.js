@@ -1,13 +1,16 @@
 // Hair models or environments: what is there, and how more gets there.
 import { html, useMemo, useState } from '../vendor/preact.js';
 import { use_app, use_list } from './hooks.js';
-import { fact_rows, label_of, names_by_digest, summary, warnings } from './input_facts.js';
+import { fact_rows, label_of, names_by_digest, summary, versions_by_path, warnings } from './input_facts.js';
 import { Cut, Facts, Loading, ProblemNote, Warnings } from './parts.js';
 import { file_names } from './uploads/uploads.js';
 import { UploadPanel } from './uploads/upload_panel.js';
 import { name_from_file } from './words.js';
 
-/** { items, more, names: { sha256: [path] }, files: { sha256: file name }, problem, reload } */
+/**
+ * { items, more, names: { sha256: [path] }, versions: { path: version }, files: { sha256: file name }, problem,
+ * reload }
+ */
 export function use_inputs(kind) {
     const list = use_list(`/v1/${kind}s`, `${kind}s`);
     const named = use_list(`/v1/names/${kind}`, 'names');
@@ -16,9 +19,10 @@ export function use_inputs(kind) {
         named.reload();
     };
     const names = useMemo(() => names_by_digest(named.items ?? []), [named.items]);
+    const versions = useMemo(() => versions_by_path(named.items ?? []), [named.items]);
     const files = useMemo(file_names, [list.items]);
     const more = list.more || named.more;
-    return { items: list.items, more, names, files, problem: list.problem ?? named.problem, reload };
+    return { items: list.items, more, names, versions, files, problem: list.problem ?? named.problem, reload };
 }
 
 /** Points a name at a file: entry is { kind, id } with the file's digest as id. */

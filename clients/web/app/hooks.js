@@ -38,25 +38,29 @@ export function use_watch(path, every_ms, ended = () => false, round = 0) {
     return state;
 }
 
-/** { items, more } of a list that comes in pages: up to `most` items, and whether there are more. */
-async function all_pages(api, path, key, most) {
+// The most that the service gives at once, by what the list is of.
+const page_sizes = { bakes: 1000, names: 1000, models: 200, environments: 200 };
+
+/** { items, more } of a list that comes in pages: most_shown items or fewer, and whether there are more. */
+async function all_pages(api, path, key) {
     const items = [];
+    const limit = page_sizes[key];
     for (let cursor = '';;) {
-        const page = await api.json(path + (path.includes('?') ? '&' : '?') + `limit=200${cursor}`);
+        const page = await api.json(path + (path.includes('?') ? '&' : '?') + `limit=${limit}${cursor}`);
         items.push(...page[key]);
-        if (!page.next || items.length >= most) return { items, more: Boolean(page.next) };
+        if (!page.next || items.length >= most_shown) return { items, more: Boolean(page.next) };
         cursor = `&cursor=${encodeURIComponent(page.next)}`;
     }
 }
 
 /** { items, more, problem, reload } of such a list. */
-export function use_list(path, key, most = most_shown) {
+export function use_list(path, key) {
     const { api } = use_app();
     const [state, set_state] = useState({ items: null });
     const [round, set_round] = useState(0);
     useEffect(() => {
         let live = true;
-        all_pages(api, path, key, most).then(
+        all_pages(api, path, key).then(
             list => live && set_state(list),
             problem => live && set_state({ items: [], problem }),
         );

@@ -87,3 +87,6 @@ export function names_by_digest(list) {
     for (const { path, sha256 } of list) (names[sha256] ??= []).push(path);
     return names;
 }
+
+/** The newest versions of names of one kind: { path: version }. */
+export const versions_by_path = list => Object.fromEntries(list.map(({ path, version }) => [path, version]));

@@ -1,6 +1,7 @@
 // What the viewer needs of a bake: its request, and the files of the output `raw` as typed arrays. The bytes come from
 // a service that anyone may write to, so that every number is compared with the size of what it describes.
 
+import { request_by_names } from '../app/bake/by_names.js';
 import { from_half } from './half.js';
 
 const needed = ['strands.json', 'strands.bin', 'maps.json', 'maps.f16'];
@@ -56,7 +57,7 @@ function refuse_unfit(view) {
         throw new BakeProblem(
             'This bake did not write the output "raw", which is what the viewer reads. Ask for the same bake with ' +
                 '"raw" among its outputs; what it computed already is computed again only to be written.',
-            { ...view.request, outputs: [...new Set([...view.request.outputs, 'raw'])] },
+            { ...request_by_names(view), outputs: [...new Set([...view.request.outputs, 'raw'])] },
         );
 }
 

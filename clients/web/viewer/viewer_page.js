@@ -6,6 +6,7 @@
 //   api is that of app/api.js: its failures are Errors in words, with the status (0: no answer).
 //
 // What it holds on the card, its loop and what it is fetching end when it is unmounted.
+import { request_by_names } from '../app/bake/by_names.js';
 import { html, useEffect, useRef, useState } from '../vendor/preact.js';
 import { BakeOrder } from './bake_order.js';
 import { load_bake } from './bake_files.js';
@@ -29,9 +30,10 @@ export function ViewerPage({ left, right, api, words = bake => bake.id.slice(0, 
     const [sides, set_sides] = useState([default_side]);
     const [look, set_look] = useState(default_look);
     const [edit, set_edit] = useState(no_edit());
-    const orders = useRef(new Map()); // id of a bake that was asked for here -> the edit that is in it
+    const [edit_number, set_edit_number] = useState(0); // counts the edits; moving a slider goes on with the same one
+    const orders = useRef(new Map()); // id of a bake that was asked for here -> { number of the edit, from: id }
     const now = useRef({});
-    now.current = { sides, edit };
+    now.current = { sides, edit, edit_number };
     const [stops, set_stops] = useState(0);
     const [way, set_way] = useState('automatic');
 
@@ -39,10 +41,17 @@ export function ViewerPage({ left, right, api, words = bake => bake.id.slice(0, 
     useEffect(() => {
         const abort = new AbortController();
         const show = loaded => {
-            // What an edit was baked into is not edited once more.
-            const holds_edit = ({ id }) => orders.current.get(id) === now.current.edit;
-            const two = loaded.length > 1,
-                lighting = !two && holds_edit(loaded[0]) ? no_edit() : now.current.edit;
+            const { edit, edit_number } = now.current;
+            const two = loaded.length > 1;
+            // What an edit was baked into is not edited once more, also where the edit has gone on since. Alone it is
+            // shown as baked and a new edit begins there: what was changed after the order is left behind, as it starts
+            // from the old lighting. Beside the bake that it was ordered from, the edit stays, as that one's.
+            const holds_edit = ({ id }) => {
+                const order = orders.current.get(id);
+                return Boolean(order) && (order.edit_number === edit_number || (two && order.from === loaded[0].id));
+            };
+            const begins_anew = !two && holds_edit(loaded[0]),
+                lighting = begins_anew ? no_edit() : edit;
             const first = now.current.sides[0];
             const together = loaded.map((bake, i) => ({ ...first, bake: i, as_baked: two && holds_edit(bake) }));
             view.current.set_bakes(loaded);
@@ -50,6 +59,7 @@ export function ViewerPage({ left, right, api, words = bake => bake.id.slice(0, 
             view.current.set_lighting(lighting);
             set_sides(together);
             set_edit(lighting);
+            if (begins_anew) set_edit_number(edit_number + 1);
             set_bakes(loaded);
             if (!bakes.some(({ strands }) => strands === loaded[0].strands)) view.current.frame_hair();
             if (!bakes.some(({ id }) => id === loaded[0].id)) set_stops(view.current.automatic_stops());
@@ -101,8 +111,9 @@ export function ViewerPage({ left, right, api, words = bake => bake.id.slice(0, 
                     <fieldset>
                         <legend>Bake this lighting</legend>
                         <${BakeOrder} api=${api} old=${edited.id} label="Bake this lighting"
-                            disabled=${!is_edited(edit)} request=${() => compose_request(edited.request, edit)}
-                            on_asked=${id => orders.current.set(id, edit)} />
+                            disabled=${!is_edited(edit)}
+                            request=${() => compose_request(request_by_names(edited), edit)}
+                            on_asked=${id => orders.current.set(id, { edit_number, from: edited.id })} />
                         <button type="button" class="secondary" disabled=${!is_edited(edit)}
                             onClick=${() => set_edit(no_edit())}>
                             Undo the edit

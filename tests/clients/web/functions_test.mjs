@@ -2,16 +2,19 @@
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
 import { test } from 'node:test';
+import { request_by_names } from '../../../clients/web/app/bake/by_names.js';
 import {
     build_request,
     differences,
     first_values,
     merged,
+    names_of,
     reference_to,
     with_value,
 } from '../../../clients/web/app/bake/request.js';
 import { defaults_of, faults, fields_of, range_words } from '../../../clients/web/app/bake/schema.js';
-import { warnings } from '../../../clients/web/app/input_facts.js';
+import { names_by_digest, versions_by_path, warnings } from '../../../clients/web/app/input_facts.js';
+import { wait_ms_of } from '../../../clients/web/app/patience.js';
 import {
     face_direction,
     latlong_direction,
@@ -198,12 +201,34 @@ test('addresses are taken apart, broken ones too', () => {
     assert.deepEqual(read_route(''), { path: [], query: {} });
 });
 
-test('a request asks by the first name of a file, by the chosen one, or by digest', () => {
-    const names = { abc: ['stage/dawn', 'stage/dusk'] };
-    assert.equal(reference_to({ id: '' }, names), null);
-    assert.equal(reference_to({ id: 'abc' }, names), 'name:stage/dawn');
-    assert.equal(reference_to({ id: 'abc', by: 'name:stage/dusk' }, names), 'name:stage/dusk');
-    assert.equal(reference_to({ id: 'abc', by: 'name:gone' }, names), 'name:stage/dawn');
-    assert.equal(reference_to({ id: 'abc', by: '' }, names), 'sha256:abc');
-    assert.equal(reference_to({ id: 'def' }, names), 'sha256:def');
+test('a request asks by the first name of a file in its version, by the chosen one, or by digest', () => {
+    const list = [
+        { path: 'stage/dawn', sha256: 'abc', version: 3 },
+        { path: 'stage/dusk', sha256: 'abc', version: 1 },
+    ];
+    const inputs = { names: names_by_digest(list), versions: versions_by_path(list) };
+    assert.deepEqual(names_of('abc', inputs), ['name:stage/dawn@3', 'name:stage/dusk@1']);
+    assert.deepEqual(names_of('def', inputs), []);
+    assert.equal(reference_to({ id: '' }, inputs), null);
+    assert.equal(reference_to({ id: 'abc' }, inputs), 'name:stage/dawn@3');
+    assert.equal(reference_to({ id: 'abc', by: 'name:stage/dusk@1' }, inputs), 'name:stage/dusk@1');
+    assert.equal(reference_to({ id: 'abc', by: 'name:gone@1' }, inputs), 'name:stage/dawn@3');
+    assert.equal(reference_to({ id: 'abc', by: '' }, inputs), 'sha256:abc');
+    assert.equal(reference_to({ id: 'def' }, inputs), 'sha256:def');
+});
+
+test('the request of a bake names what it was asked by, in the version that it had', () => {
+    const request = { hair: 'sha256:a', environment: 'sha256:b', occluder: null, outputs: ['raw'] };
+    const names = { environment: { path: 'stage/dawn', version: 2 } };
+    assert.deepEqual(request_by_names({ request, names }), { ...request, environment: 'name:stage/dawn@2' });
+    assert.deepEqual(request_by_names({ request, names: {} }), request);
+});
+
+test('Retry-After is read in seconds and as a date, and no wait is longer than two minutes', () => {
+    assert.deepEqual([null, '', 'soon', '0', '-5'].map(wait_ms_of), [0, 0, 0, 0, 0]);
+    assert.equal(wait_ms_of('60'), 60_000);
+    assert.equal(wait_ms_of('999999'), 120_000);
+    const wait = wait_ms_of(new Date(Date.now() + 30_000).toUTCString()); // in whole seconds
+    assert.ok(wait > 20_000 && wait <= 30_000, `${wait} ms`);
+    assert.equal(wait_ms_of('Wed, 21 Oct 2015 07:28:00 GMT'), 0);
 });

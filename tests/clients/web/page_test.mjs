@@ -87,6 +87,21 @@ async function send_slowly(page, file) {
     await page.waitForFunction(() => document.querySelector('.job[data-phase=sending] progress')?.value > 0.15);
 }
 
+/** Points a name of the daemon at a file. */
+const put_name = (kind, path, digest) =>
+    daemon.json(`/v1/names/${kind}/${path}`, {
+        method: 'PUT',
+        headers: { 'Content-Type': 'application/json' },
+        body: JSON.stringify({ sha256: digest }),
+    });
+
+/** The sample's groom with other words in the 88 bytes of "info" of a HAIR header: a file that the service lacks. */
+function groom_with(words) {
+    const bytes = Buffer.from(readFileSync(join(sample, 'groom.hair')));
+    bytes.write(`${words}\0`, 40);
+    return bytes;
+}
+
 async function assert_stored(file) {
     const digest = sha256(readFileSync(file));
     const reply = await fetch(`${daemon.address}/v1/models/${digest}`);
@@ -118,6 +133,69 @@ test('an upload goes on after the connection was cut', async () => {
         await page.locator('.job[data-phase=stored]').waitFor();
         assert.ok(offsets.length > begun && offsets.at(-1) > 0, `PATCH requests began at ${offsets}`);
         await assert_stored(file);
+    });
+});
+
+const turned_away = (detail, wait_s) => ({
+    status: 429,
+    headers: { 'Retry-After': String(wait_s) },
+    contentType: 'application/problem+json',
+    json: { detail },
+});
+
+test('an upload that is turned away for now waits as long as it is told, and goes on where it was', async () => {
+    const file = large_groom(16);
+    const words = 'more requests or uploads at once than allowed';
+    await with_page(daemon.address, async page => {
+        const offsets = watch_patches(page);
+        const once = new Map(); // each kind of question is turned away the first time; a PATCH, the second piece
+        await page.route(/\/v1\/(blobs|uploads|models)/, route => {
+            const request = route.request();
+            const kind = `${request.method()} ${new URL(request.url()).pathname.split('/')[2]}`;
+            const is_first_piece = Number(request.headers()['upload-offset']) === 0;
+            if (request.method() === 'GET' || is_first_piece || once.has(kind)) return route.continue();
+            once.set(kind, Date.now());
+            return route.fulfill(turned_away(words, kind === 'PATCH uploads' ? 2 : 0));
+        });
+        const asked_on = page.waitForRequest(request => request.method() === 'HEAD' && /uploads/.test(request.url()));
+        await page.goto(`${daemon.address}/#/models`);
+        await page.locator('.drop-zone input[type=file]').setInputFiles(file);
+        await page.getByText(`The service is asked again: ${words}`).waitFor();
+        await asked_on;
+        const waited_ms = Date.now() - once.get('PATCH uploads');
+        assert.ok(waited_ms >= 2000, `it was asked again after ${waited_ms} ms`);
+        await page.locator('.job[data-phase=stored]').waitFor();
+        assert.deepEqual(
+            [...once.keys()],
+            ['HEAD blobs', 'POST uploads', 'PATCH uploads', 'HEAD uploads', 'POST models'],
+        );
+        assert.equal(offsets.filter(offset => offset === 0).length, 1, `PATCH requests began at ${offsets}`);
+        await assert_stored(file);
+    });
+});
+
+test('a file that is turned away again and again is told of and kept', async () => {
+    const words = 'there are 256 unfinished uploads of this token; allowed are 256: finish some or delete them';
+    const bytes = groom_with('turned away');
+    await with_page(daemon.address, async page => {
+        let tries = 0;
+        await page.route('**/v1/uploads', route => {
+            ++tries;
+            return route.fulfill(turned_away(words, 60));
+        });
+        await page.addInitScript(() => {
+            const wait = setTimeout;
+            globalThis.setTimeout = (act, ms) => wait(act, Math.min(ms, 20)); // minutes in all
+        });
+        await page.goto(`${daemon.address}/#/models`);
+        const file = { name: 'away.hair', mimeType: '', buffer: bytes };
+        await page.locator('.drop-zone input[type=file]').setInputFiles(file);
+        await page.locator('.job[data-phase=failed] [role=alert]', { hasText: words }).waitFor();
+        assert.equal(tries, 11); // after each of ten pauses, and at first
+        await page.unrouteAll({ behavior: 'wait' });
+        await page.reload(); // which goes on with what is kept
+        await page.locator('.job[data-phase=stored]').waitFor();
+        assert.equal((await fetch(`${daemon.address}/v1/models/${sha256(bytes)}`)).status, 200);
     });
 });
 
@@ -171,9 +249,8 @@ test('hostile names are text', async () => {
 });
 
 test('a hair model that calls itself a script is text', async () => {
-    const bytes = Buffer.from(readFileSync(join(sample, 'groom.hair')));
     const info = '<script>alert(1)</script>';
-    bytes.write(info + '\0', 40); // the 88 bytes of "info" of a HAIR header
+    const bytes = groom_with(info);
     await with_page(daemon.address, async page => {
         page.on('dialog', () => assert.fail('a script of a model ran'));
         await page.goto(`${daemon.address}/#/models`);
@@ -187,13 +264,7 @@ test('a hair model that calls itself a script is text', async () => {
 });
 
 test('a name gets a new version, shows what followed the old one, and that is baked again in one step', async () => {
-    const put = digest =>
-        daemon.json('/v1/names/environment/stage/sunset', {
-            method: 'PUT',
-            headers: { 'Content-Type': 'application/json' },
-            body: JSON.stringify({ sha256: digest }),
-        });
-    await put(sky);
+    await put_name('environment', 'stage/sunset', sky);
     const { request } = await daemon.json(`/v1/bakes/${bake}`);
     const irradiance = { ...request.irradiance, exponent: 10 }; // a bake of its own: the first one asked by digest
     await daemon.finished(
@@ -236,8 +307,11 @@ test('a mesh is sent, gets a name and a new version, and what followed the old o
         await page.getByRole('link', { name: 'heads/round' }).click();
         await page.getByText('0 bakes asked for this name').waitFor();
         const { request } = await daemon.json(`/v1/bakes/${bake}`);
-        const { id } = await daemon.post('/v1/bakes', { ...request, occluder: 'name:heads/round' });
+        await put_name('environment', 'stage/still', sky);
+        const by_names = { environment: 'name:stage/still', occluder: 'name:heads/round' };
+        const { id } = await daemon.post('/v1/bakes', { ...request, ...by_names });
         await daemon.finished(id);
+        await put_name('environment', 'stage/still', await daemon.add('environment', join(sample, 'studio.hdr')));
         await page.goto(`${daemon.address}/#/meshes`);
         await send_and_name(other, 'heads/round');
         await page.getByRole('cell', { name: '2', exact: true }).waitFor();
@@ -247,6 +321,10 @@ test('a mesh is sent, gets a name and a new version, and what followed the old o
         await page.getByRole('heading', { name: 'Bakes' }).waitFor();
         const { bakes } = await daemon.json('/v1/bakes?name=heads%2Fround');
         assert.deepEqual(bakes.map(one => one.names.occluder.version).sort(), [1, 2]);
+        for (const { environment, names } of bakes) {
+            assert.equal(environment, sky); // only the mesh is another
+            assert.deepEqual(names.environment, { path: 'stage/still', version: 1 });
+        }
     });
 });
 
@@ -408,10 +486,10 @@ test('a bake asked for in the form by name follows the name to its new version',
         await page.locator(`input[type=radio][value="${groom}"]`).check();
         await page.getByLabel('Preset').selectOption('draft');
         const by = page.getByLabel('Environment: asked for by');
-        assert.equal((await request_of_form(page)).environment, 'name:stage/dawn');
+        assert.equal((await request_of_form(page)).environment, 'name:stage/dawn@1');
         await by.selectOption('this file');
         assert.equal((await request_of_form(page)).environment, `sha256:${sky}`);
-        await by.selectOption('name:stage/dawn');
+        await by.selectOption('name:stage/dawn@1');
         await page.getByRole('button', { name: 'Bake', exact: true }).click();
         await page.waitForURL(/#\/bakes\/[0-9a-f]{64}$/);
         await daemon.finished(page.url().split('#/bakes/')[1]);
@@ -420,6 +498,69 @@ test('a bake asked for in the form by name follows the name to its new version',
         await page.getByRole('button', { name: 'Put as version 2' }).click();
         await page.getByText('1 bake asked for this name, 1 of them for an older version.').waitFor();
         await page.getByRole('button', { name: /Bake with the newest version/ }).waitFor();
+    });
+});
+
+test('the form bakes the file that was picked, also where its name has moved on since', async () => {
+    const studio = await daemon.add('environment', join(sample, 'studio.hdr'));
+    await put_name('environment', 'stage/noon', sky);
+    await with_page(daemon.address, async page => {
+        await open_form(page);
+        await page.locator(`input[type=radio][value="${sky}"]`).check();
+        await page.locator(`input[type=radio][value="${groom}"]`).check();
+        await page.getByLabel('Environment: asked for by').selectOption('name:stage/noon@1');
+        await put_name('environment', 'stage/noon', studio);
+        await page.getByRole('button', { name: 'Bake', exact: true }).click();
+        await page.waitForURL(/#\/bakes\/[0-9a-f]{64}$/);
+        const address = `/v1/bakes/${page.url().split('#/bakes/')[1]}`;
+        const { environment, names } = await daemon.json(address);
+        assert.equal(environment, sky);
+        assert.deepEqual(names.environment, { path: 'stage/noon', version: 1 });
+        await daemon.json(address, { method: 'DELETE' });
+    });
+});
+
+test('the form asks again after a refusal, which may have passed', async () => {
+    const refusal = { detail: 'hair is not stored; send it first', field: 'hair' };
+    await with_page(daemon.address, async page => {
+        let asked = 0;
+        await page.route('**/v1/bakes', route => {
+            if (++asked > 2) return route.fulfill({ status: 202, json: { id: bake, state: 'queued' } });
+            return route.fulfill({ status: 422, contentType: 'application/problem+json', json: refusal });
+        });
+        await open_form(page, `?environment=${sky}&hair=${groom}`);
+        const bake_button = page.getByRole('button', { name: 'Bake', exact: true });
+        const problem = page.locator('#fault-hair', { hasText: refusal.detail });
+        await bake_button.click();
+        await problem.waitFor();
+        await page.getByLabel('Preset').selectOption('draft');
+        await problem.waitFor({ state: 'detached' });
+        await bake_button.click();
+        await problem.waitFor();
+        await bake_button.click();
+        await page.waitForURL(new RegExp(`#/bakes/${bake}$`));
+        assert.equal(asked, 3);
+    });
+});
+
+test('of more bakes than a list holds the first ones are shown, and the service finds the others itself', async () => {
+    await put_name('environment', 'stage/crowd', sky);
+    await put_name('environment', 'stage/crowd', await daemon.add('environment', join(sample, 'studio.hdr')));
+    const { bakes } = await daemon.json('/v1/bakes?state=done&limit=1');
+    const names = { environment: { path: 'stage/crowd', version: 1 } };
+    const crowd = Array.from({ length: 1000 }, (_, i) => ({ ...bakes[0], id: `${i}`.padStart(64, '0'), names }));
+    await with_page(daemon.address, async page => {
+        const asked = [];
+        await page.route('**/v1/bakes?name=*', route => {
+            asked.push(new URL(route.request().url()).searchParams.get('limit'));
+            return route.fulfill({ json: { bakes: crowd, next: '1' } });
+        });
+        const again = page.waitForRequest(request => request.url().includes('/v1/rebakes'));
+        await page.goto(`${daemon.address}/#/names/environment/stage/crowd`);
+        await page.getByText('At least 1,000 bakes asked for this name, 1000 of them for an older version.').waitFor();
+        await page.getByText('Only the first 1,000 are shown').waitFor();
+        assert.deepEqual(asked, ['1000']);
+        assert.deepEqual((await again).postDataJSON(), { environment: 'name:stage/crowd', name: 'stage/crowd' });
     });
 });
 
@@ -519,8 +660,7 @@ test('a second tab leaves an upload to the first one until that is closed', asyn
 });
 
 test('a file is sent also where the browser has no room to remember it', async () => {
-    const bytes = Buffer.from(readFileSync(join(sample, 'groom.hair')));
-    bytes.write('one more groom\0', 40); // in the 88 bytes of "info" of a HAIR header
+    const bytes = groom_with('one more groom');
     await with_page(daemon.address, async page => {
         await page.goto(`${daemon.address}/#/models`);
         await page.evaluate(() => {

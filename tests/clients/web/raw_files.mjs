@@ -88,11 +88,12 @@ export function bake_service(bakes) {
     return (method, path) => {
         const [, id, name] = path.match(/^\/v1\/bakes\/(\w+)(?:\/files\/([\w.]+))?$/) ?? [];
         if (!bakes[id]) return undefined;
-        const { files, request = {} } = bakes[id];
+        const { files, request = {}, names = {} } = bakes[id];
         if (name) return { type: 'application/octet-stream', body: files[name] };
         const view = {
             id,
             state: 'done',
+            names,
             request: { hair: 'sha256:0', environment: 'sha256:1', outputs: ['raw'], ...request },
             files: Object.keys(files).map(file => ({ name: file, sha256: `${id} ${file}` })),
         };

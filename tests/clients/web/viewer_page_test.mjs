@@ -34,6 +34,7 @@ const sources = { strands: 'first', maps: 'second' }; // what the new bake has i
 const going = json({ id: 'new', state: 'running' });
 let site, server, browser, page, posted, refusal;
 let done, expired; // the new bake; whether files are refused
+let ordered; // the id of the bake that an order makes
 let polls; // answers about the bake that was asked for; the last one stays
 
 /** Curls round a ball: something that can be recognised in a picture. */
@@ -71,11 +72,16 @@ before(async () => {
         hair = ball_of_hair(random);
     const maps = (count, exponent = 64, scale = 1) => random_maps(random, 8, count, { scale, exponent }).files;
     const request = { irradiance: { rotation_deg: [0, 30, 0], exposure_stops: 1, tint: [1, 1, 1], lights: [] } };
+    const names = { environment: { path: 'stage/dawn', version: 2 } };
     const bakes = bake_service({
-        first: { files: { ...hair, ...maps(34) }, request },
+        first: { files: { ...hair, ...maps(34) }, request, names },
         second: { files: { ...hair, ...maps(10, 20) }, request: { irradiance: { rotation_deg: [0, 10, 0] } } },
         dim: { files: { ...hair, ...maps(10, 64, 2 ** -20) } },
-        unread: { files: { 'transmittance.npy': Buffer.alloc(1) }, request: { ...request, outputs: ['npy'] } },
+        unread: {
+            files: { 'transmittance.npy': Buffer.alloc(1) },
+            request: { ...request, outputs: ['npy'] },
+            names: { hair: { path: 'heads/curly', version: 1 } },
+        },
         bald: { files: { ...hair, ...maps(34) }, request: { hair: null } },
         broken: { files: { ...hair, ...maps(34), 'strands.bin': Buffer.alloc(100) } },
     });
@@ -91,7 +97,7 @@ before(async () => {
         if (method === 'POST' && refusal) return json({ detail: refusal }, 422);
         if (method === 'POST') {
             posted.push(JSON.parse(body));
-            return json({ id: 'new', state: 'queued' }, 202);
+            return json({ id: ordered, state: 'queued' }, 202);
         }
         if (path === '/v1/bakes/new') return polls.length > 1 ? polls.shift() : polls[0];
         const shared = path.match(/^\/v1\/bakes\/new\/files\/(strands|maps)/);
@@ -112,6 +118,7 @@ beforeEach(() => {
     posted = [];
     refusal = null;
     expired = false;
+    ordered = 'new';
     polls = [going, done];
 });
 afterEach(async () => {
@@ -219,7 +226,7 @@ test('The edited lighting is shown at once and baked as a request: turned, expos
     assert.deepEqual(posted, [
         {
             hair: 'sha256:0',
-            environment: 'sha256:1',
+            environment: 'name:stage/dawn@2', // as which the old bake was asked for
             outputs: ['raw'],
             irradiance: {
                 rotation_deg: [0, 90, 0],
@@ -268,6 +275,42 @@ test('With another bake beside it camera and edit stay, and what both share is n
     await page.getByRole('link', { name: 'open the new bake' }).click();
     await page.locator('.viewer-captions').getByText('new').waitFor();
     assert.ok(await page.getByRole('button', { name: 'Bake this lighting' }).isDisabled(), 'it is edited twice');
+});
+
+test('What an edit was baked into is not edited once more where the edit has gone on since', async () => {
+    await open('first');
+    await slider('Turn about the vertical').fill('60');
+    await page.getByRole('button', { name: 'Bake this lighting' }).click();
+    await page.getByRole('link', { name: 'compare' }).waitFor();
+    await slider('Exposure').press('ArrowRight');
+    await page.getByRole('link', { name: 'compare' }).click();
+    await page.getByText(/^new.*, as baked$/).waitFor();
+    assert.match(await page.innerText('.viewer-captions'), /first.*, edited/);
+    assert.equal(await slider('Exposure').inputValue(), '0.1');
+    await page.getByRole('link', { name: 'open the new bake' }).click();
+    await page.waitForFunction(() => document.querySelectorAll('.viewer-captions span').length === 1);
+    assert.doesNotMatch(await page.innerText('.viewer-captions'), /edited/);
+    assert.equal(await slider('Turn about the vertical').inputValue(), '0');
+    assert.equal(await slider('Exposure').inputValue(), '0');
+});
+
+test('An edit that begins in a bake ordered here is an edit of that bake', async () => {
+    await open('first');
+    await slider('Turn about the vertical').fill('60');
+    await page.getByRole('button', { name: 'Bake this lighting' }).click();
+    await page.getByRole('link', { name: 'open the new bake' }).click();
+    await page.locator('.viewer-captions').getByText('new').waitFor();
+    ordered = 'second';
+    await slider('Turn about the vertical').fill('20');
+    await page.getByRole('button', { name: 'Bake this lighting' }).click();
+    await page.getByRole('link', { name: 'compare' }).click();
+    await page.getByText(/^second.*, as baked$/).waitFor();
+    assert.match(await page.innerText('.viewer-captions'), /new.*, edited/);
+    assert.deepEqual(posted[1].irradiance.rotation_deg, [0, 50, 0]); // 30 in the played bake, and 20
+    await page.goBack();
+    await page.waitForFunction(() => document.querySelectorAll('.viewer-captions span').length === 1);
+    assert.match(await page.innerText('.viewer-captions'), /new.*, edited/);
+    assert.equal(await slider('Turn about the vertical').inputValue(), '20');
 });
 
 test('A refusal of the service is shown as text', async () => {
@@ -336,6 +379,7 @@ test('A bake without the output raw says what to ask for, and asks for it', asyn
     await page.getByRole('button', { name: 'Bake it with "raw"' }).click();
     await page.getByRole('link', { name: 'open the new bake' }).waitFor();
     assert.deepEqual(posted[0].outputs, ['npy', 'raw']);
+    assert.equal(posted[0].hair, 'name:heads/curly@1');
 });
 
 test('A bake without hair and one whose files do not fit together are told of in words', async () => {

@@ -4,6 +4,8 @@ import { use_app, use_list } from '../hooks.js';
 import { Cut } from '../parts.js';
 import { short_digest, title_words } from '../words.js';
 
+const words_after = words => (words ? `: ${words}` : '');
+
 /** value: 'sha256:...', 'name:...' or null; on_wait(words): why a picked file is not the value yet, null once it is. */
 export function MeshField({ name, schema, value, on_change, on_wait, fault }) {
     const { uploads } = use_app();
@@ -51,7 +53,7 @@ export function MeshField({ name, schema, value, on_change, on_wait, fault }) {
                 </option>`)}
         </select>
         <input type="file" accept=".obj" aria-label=${`Send an OBJ file as ${name}`} onChange=${pick} />
-        ${waits && html`<small role="status">${job.file.name}: ${job.phase}${job.problem ? `: ${job.problem}` : ''}
+        ${waits && html`<small role="status">${job.file.name}: ${job.phase}${words_after(job.problem ?? job.waits)}
             </small>`}
         ${waits && html`<p class="actions">
             ${job.phase === 'failed' && html`<button type="button" class="small"

@@ -27,14 +27,13 @@ export function Picker({ kind, title, inputs, value, on_change, none, fault }) {
     </fieldset>`;
 }
 
-/** How a request asks for the chosen file: by one of the names that point at it now, or by its digest. */
-export function Reference({ title, paths, value, on_change }) {
+/** How a request asks for the chosen file: by one of `names` (see names_of), or by its digest. */
+export function Reference({ title, names, value, on_change }) {
     const id = `reference-${title.replaceAll(' ', '-')}`;
-    if (!paths) return null;
+    if (names.length === 0) return null;
     return html`<div class="field"><label for=${id}>${title}: asked for by</label>
         <select id=${id} aria-describedby=${`${id}-help`} onChange=${event => on_change(event.target.value)}>
-            ${paths.map(path => html`<option key=${path} value=${`name:${path}`} selected=${value === `name:${path}`}>
-                name:${path}</option>`)}
+            ${names.map(name => html`<option key=${name} value=${name} selected=${value === name}>${name}</option>`)}
             <option value="" selected=${!value.startsWith('name:')}>this file</option>
         </select>
         <small id=${`${id}-help`}>A bake asked for by name can follow the name's new versions.</small>

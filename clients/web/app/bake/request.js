@@ -51,12 +51,19 @@ export function differences(schema, a, b) {
 }
 
 /**
- * What a request calls an input: chosen is { id: digest or '', by: 'name:...', '' for the file itself, or undefined for
- * its first name where it has one }; names: { sha256: [path] }.
+ * The names of an input as a request calls them; names: { sha256: [path] }, versions: { path: version }. They hold the
+ * version, as a name that has moved since the page asked means another file than the one that is shown; the bake
+ * follows the name all the same.
  */
-export function reference_to({ id, by }, names) {
+export const names_of = (id, { names, versions }) => (names[id] ?? []).map(path => `name:${path}@${versions[path]}`);
+
+/**
+ * What a request calls an input: chosen is { id: digest or '', by: one of names_of, '' for the file itself, or
+ * undefined for its first name where it has one }; inputs: what names_of takes.
+ */
+export function reference_to({ id, by }, inputs) {
     if (!id) return null;
-    const known = (names[id] ?? []).map(path => `name:${path}`);
+    const known = names_of(id, inputs);
     if (by === '' || known.length === 0) return `sha256:${id}`;
     return known.includes(by) ? by : known[0];
 }

@@ -8,6 +8,7 @@ import {
     differences,
     first_values,
     merged,
+    names_of,
     reference_to,
     value_at,
     with_value,
@@ -67,6 +68,16 @@ function fault_of(wrong, path) {
     return found && { words: wrong[found], place: found.slice(own.length + 1) };
 }
 
+/** What this page finds wrong by itself, by field: words. `waits`: by field, the file that is not there yet. */
+function faults_of_form(schema, request, waits) {
+    const wrong = Object.fromEntries(
+        faults(schema, request).map(({ path, words }) => [path, `${title_words(path)} ${words}.`]),
+    );
+    if (!request.hair && !request.environment) wrong.hair = 'A hair model, an environment, or one of each is needed.';
+    for (const [name, words] of Object.entries(waits)) if (words) wrong[name] = words;
+    return wrong;
+}
+
 function Presets({ presets, value, on_change }) {
     const chosen = presets.find(({ name }) => name === value);
     return html`<div class="field"><label for="preset">Preset</label>
@@ -97,15 +108,12 @@ function Form({ schema, presets, query }) {
 
     const values = {
         ...settings,
-        hair: reference_to(hair, models.names),
-        environment: reference_to(environment, environments.names),
+        hair: reference_to(hair, models),
+        environment: reference_to(environment, environments),
     };
     const request = build_request(schema, values);
-    const wrong = Object.fromEntries(
-        faults(schema, request).map(({ path, words }) => [path, `${title_words(path)} ${words}.`]),
-    );
-    if (!values.hair && !values.environment) wrong.hair = 'A hair model, an environment, or one of each is needed.';
-    for (const [name, words] of Object.entries(waits)) if (words) wrong[name] = words;
+    const own_faults = faults_of_form(schema, request, waits);
+    const wrong = { ...own_faults };
     if (problem?.field) wrong[problem.field.replaceAll(/\[(\d+)\]/g, '.$1')] = problem.message;
     const change = (path, value) => {
         set_problem(null);
@@ -117,6 +125,7 @@ function Form({ schema, presets, query }) {
     };
     const take_preset = name => {
         const fresh = merged(start, presets.find(one => one.name === name)?.request ?? {});
+        set_problem(null);
         const { occluder, receiver, outputs } = settings;
         set_preset(name);
         set_base(fresh);
@@ -126,7 +135,8 @@ function Form({ schema, presets, query }) {
     const submit = async event => {
         event.preventDefault();
         set_asked(true);
-        const count = Object.keys(wrong).length;
+        set_problem(null); // what the service refused may be there by now: it is asked again
+        const count = Object.keys(own_faults).length;
         if (count) {
             announce(`${count_words(count, 'field')} to correct.`);
             show_fault();
@@ -145,12 +155,12 @@ function Form({ schema, presets, query }) {
     return html`<form onSubmit=${submit} ref=${form} novalidate>
         <${Picker} kind="model" title="Hair model" inputs=${models} value=${hair.id} none="None: maps alone"
             fault=${visible.hair && 'fault-hair'} on_change=${id => choose(set_hair, { id })} />
-        <${Reference} title="Hair model" paths=${models.names[hair.id]} value=${values.hair}
+        <${Reference} title="Hair model" names=${names_of(hair.id, models)} value=${values.hair}
             on_change=${by => choose(set_hair, { ...hair, by })} />
         <${Picker} kind="environment" title="Environment" inputs=${environments} value=${environment.id}
             none="None: transmittance alone" fault=${visible.environment && 'fault-environment'}
             on_change=${id => choose(set_environment, { id })} />
-        <${Reference} title="Environment" paths=${environments.names[environment.id]} value=${values.environment}
+        <${Reference} title="Environment" names=${names_of(environment.id, environments)} value=${values.environment}
             on_change=${by => choose(set_environment, { ...environment, by })} />
         ${['hair', 'environment'].map(
             name => visible[name] && html`<p class="problem" role="alert" id=${`fault-${name}`}>${visible[name]}</p>`,

@@ -1,11 +1,12 @@
 // A name with its versions: a new one, what followed the old ones, and baking that again.
 import { html, useMemo, useState } from '../../vendor/preact.js';
 import { BakeTable } from '../bake/bake_table.js';
+import { request_by_names } from '../bake/by_names.js';
 import { Rebake } from '../bake/rebake.js';
 import { name_address, use_inputs } from '../gallery.js';
 import { use_app, use_json, use_list } from '../hooks.js';
 import { label_of } from '../input_facts.js';
-import { Heads, Loading, ProblemNote } from '../parts.js';
+import { Cut, Heads, Loading, ProblemNote } from '../parts.js';
 import { file_names } from '../uploads/uploads.js';
 import { count_words, time_words } from '../words.js';
 
@@ -62,8 +63,8 @@ function BakeAgain({ name, bakes }) {
     const again = async () => {
         try {
             for (const bake of bakes) {
-                const { request } = await api.json(`/v1/bakes/${bake.id}`);
-                const newest = asked_by(bake, name).map(field => [field, `name:${name.path}`]);
+                const request = request_by_names(await api.json(`/v1/bakes/${bake.id}`));
+                const newest = asked_by(bake, name).map(field => [field, `name:${name.path}@${name.version}`]);
                 await api.post('/v1/bakes', { ...request, ...Object.fromEntries(newest) });
             }
             announce(`${count_words(bakes.length, 'bake')} asked for.`);
@@ -79,23 +80,27 @@ function BakeAgain({ name, bakes }) {
 function Followers({ kind, name }) {
     const models = use_inputs('model');
     const environments = use_inputs('environment');
-    const { items, problem } = use_list(`/v1/bakes?name=${encodeURIComponent(name.path)}`, 'bakes', Infinity);
+    const { items, more, problem } = use_list(`/v1/bakes?name=${encodeURIComponent(name.path)}`, 'bakes');
     const bakes = useMemo(() => (items ?? []).filter(bake => asked_by(bake, name).length > 0), [items]);
     const old = bakes.filter(bake => asked_by(bake, name).some(field => bake.names[field].version < name.version));
     if (problem) return html`<${ProblemNote} problem=${problem} />`;
     if (!items) return html`<${Loading} what="the bakes" />`;
     const outdated = old.filter(bake => bake.model);
+    // Of more than are listed the service knows all itself; those that follow the newest version are done already.
+    const again = more ? { name: name.path } : { bakes: outdated.map(({ id }) => id) };
     return html`<div>
         <p id="followers">
-            ${count_words(bakes.length, 'bake')} asked for this name, ${old.length} of them for an older version.</p>
+            ${more && 'At least '}${count_words(bakes.length, 'bake')} asked for this name, ${old.length} of them for an
+            older version.</p>
         ${
             kind === 'environment' &&
             outdated.length > 0 &&
             html`<${Rebake} label="Bake with the newest version:"
-            request=${{ environment: `name:${name.path}`, bakes: outdated.map(({ id }) => id) }} />`
+            request=${{ environment: `name:${name.path}`, ...again }} />`
         }
         ${kind !== 'environment' && old.length > 0 && html`<${BakeAgain} name=${name} bakes=${old} />`}
         ${bakes.length > 0 && html`<${BakeTable} bakes=${bakes} models=${models} environments=${environments} />`}
+        <${Cut} more=${more} />
     </div>`;
 }
 

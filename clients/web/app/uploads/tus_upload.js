@@ -1,8 +1,10 @@
 // Sends one file in pieces that go on after a lost connection or a reload (tus-js-client remembers upload addresses in
 // localStorage, by the file's digest).
+import { is_turned_away, pause, wait_ms_of } from '../patience.js';
 
 const piece = 8 << 20;
-const delays_ms = [0, 1000, 2000, 4000, 8000, 15000, 30000, 30000, 30000, 30000];
+/** Before one try after the other; the count begins anew when something was sent. */
+export const delays_ms = [0, 1000, 2000, 4000, 8000, 15000, 30000, 30000, 30000, 30000];
 
 let library = null;
 
@@ -21,14 +23,34 @@ function load_library() {
     return library;
 }
 
-/** Worth another try: no answer at all, a conflict with a request that is still being read, a fault of the server. */
+/** What was answered last; nothing where the connection was lost. */
+const reply_of = error => error.originalResponse ?? error.causingError?.reply;
+
+/**
+ * Worth another try: no answer at all, a conflict with a request that is still being read, what was turned away for
+ * now, a fault of the server.
+ */
 function may_pass(error) {
-    const status = error.originalResponse?.getStatus() ?? 0;
-    return status === 0 || status === 409 || status === 423 || status >= 500;
+    const status = reply_of(error)?.getStatus() ?? 0;
+    return status === 0 || status === 409 || status === 423 || is_turned_away(status) || status >= 500;
+}
+
+/**
+ * Waits as long as an answer asks for that passes by itself, then fails with it. tus-js-client knows no Retry-After;
+ * and where it asks how much of an upload the service has, it takes such an answer for an upload that is gone and sends
+ * all of the file anew.
+ */
+async function wait_when_turned_away(reply, on_wait, signal) {
+    const status = reply.getStatus();
+    if (!is_turned_away(status) && status < 500) return;
+    const error = Object.assign(new Error(`status ${status}`), { reply });
+    if (!signal.aborted) on_wait(words_of(error));
+    await pause(wait_ms_of(reply.getHeader('Retry-After')), signal);
+    throw error;
 }
 
 function words_of(error) {
-    const reply = error.originalResponse;
+    const reply = error.reply ?? reply_of(error);
     if (!reply) return 'The connection was lost and did not come back.';
     try {
         return JSON.parse(reply.getBody()).detail;
@@ -64,8 +86,11 @@ const options_of = (tus, file, sha256) => ({
     onShouldRetry: may_pass,
 });
 
-/** Resolves when the service has the whole file. on_progress(bytes); aborting `signal` ends the upload there too. */
-export async function send_file(file, sha256, on_progress, signal) {
+/**
+ * Resolves when the service has the whole file. on_progress(bytes); on_wait(words): why it is asked again later;
+ * aborting `signal` ends the upload there too.
+ */
+export async function send_file(file, sha256, { on_progress, on_wait, signal }) {
     const tus = await load_library();
     signal.throwIfAborted();
     await new Promise((resolve, reject) => {
@@ -74,8 +99,9 @@ export async function send_file(file, sha256, on_progress, signal) {
             ...options_of(tus, file, sha256),
             onProgress: on_progress,
             onSuccess: resolve,
+            onAfterResponse: (_, reply) => wait_when_turned_away(reply, on_wait, signal),
             onError: error =>
-                reject(Object.assign(new Error(words_of(error)), { status: error.originalResponse?.getStatus() })),
+                reject(Object.assign(new Error(words_of(error)), { status: reply_of(error)?.getStatus() })),
             onUploadUrlAvailable: () => {
                 if (signal.aborted) end();
             },

@@ -28,6 +28,7 @@ function Job({ job }) {
         <span role=${job.phase === 'failed' ? 'alert' : null} class=${job.phase === 'failed' ? 'problem' : ''}>
             ${phase_words[job.phase](job)}
         </span>
+        ${job.waits && html`<span class="waits">The service is asked again: ${job.waits}</span>`}
         ${moving && html`<progress value=${share} max="1" aria-label=${`${job.file.name}, ${job.phase}`}></progress>`}
         <span class="actions">
             ${job.phase === 'failed' && html`<button class="small" onClick=${() => uploads.again(job)}>Go on</button>`}

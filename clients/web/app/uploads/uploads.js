@@ -1,10 +1,15 @@
 // All files that are being sent, one after the other; they go on while pages change.
+import { is_turned_away, pause } from '../patience.js';
 import { forget_file, keep_file, kept_file, kept_files } from './kept_files.js';
-import { end_upload, send_file } from './tus_upload.js';
+import { delays_ms, end_upload, send_file } from './tus_upload.js';
+
+/** Whether asking again changes nothing: a token may come (401), and what was turned away for now passes. */
+const is_final = status => status >= 400 && status < 500 && status !== 401 && !is_turned_away(status);
 
 /**
- * A job: { id, kind: 'model' | 'environment' | 'mesh', file, phase, done, known, sha256, entry, problem }.
- * phase: waiting, digesting, sending, reading (by the service), stored, failed; done: bytes of the phase.
+ * A job: { id, kind: 'model' | 'environment' | 'mesh', file, phase, done, known, sha256, entry, problem, waits }.
+ * phase: waiting, digesting, sending, reading (by the service), stored, failed; done: bytes of the phase; waits: why
+ * the service is asked again later, if it is.
  */
 export class Uploads {
     jobs = [];
@@ -96,17 +101,18 @@ export class Uploads {
             const sha256 = await digest_of(job.file, done => this.#update(job, { done }), signal);
             const known = await this.#give(job, sha256, signal);
             signal.throwIfAborted();
-            this.#update(job, { phase: 'reading', sha256, known });
-            const entry = job.kind === 'mesh' ? null : await this.#api.post(`/v1/${job.kind}s`, { sha256 });
+            this.#update(job, { phase: 'reading', sha256, known, waits: null });
+            const read = () => this.#api.post(`/v1/${job.kind}s`, { sha256 });
+            const entry = job.kind === 'mesh' ? null : await this.#patiently(job, read, signal);
             signal.throwIfAborted();
             remember_name(sha256, job.file.name);
-            this.#update(job, { phase: 'stored', entry });
+            this.#update(job, { phase: 'stored', entry, waits: null });
             this.#announce(`${job.file.name} is stored.`);
             this.#let_go(job.id);
         } catch (error) {
             if (signal.aborted) return;
-            this.#update(job, { phase: 'failed', problem: error.message, status: error.status });
-            if (error.status >= 400 && error.status < 500 && error.status !== 401) this.#let_go(job.id);
+            this.#update(job, { phase: 'failed', problem: error.message, status: error.status, waits: null });
+            if (is_final(error.status)) this.#let_go(job.id);
         } finally {
             this.#stops.delete(job.id);
         }
@@ -118,9 +124,13 @@ export class Uploads {
         const stopped = new Promise((_, reject) => signal.addEventListener('abort', () => reject(signal.reason)));
         try {
             await Promise.race([turn.granted, stopped]);
-            if (await this.#is_stored(sha256, signal)) return true;
-            this.#update(job, { phase: 'sending', sha256, done: 0 });
-            await send_file(job.file, sha256, done => this.#update(job, { done }), signal);
+            if (await this.#patiently(job, () => this.#is_stored(sha256, signal), signal)) return true;
+            this.#update(job, { phase: 'sending', sha256, done: 0, waits: null });
+            await send_file(job.file, sha256, {
+                on_progress: done => this.#update(job, { done, waits: null }),
+                on_wait: words => this.#wait(job, words),
+                signal,
+            });
             return false;
         } finally {
             turn.release();
@@ -136,6 +146,25 @@ export class Uploads {
             if (problem.status === 404) return false;
             throw problem;
         }
+    }
+
+    /** Asks again what was turned away, as often as a piece of a file would be sent. */
+    async #patiently(job, ask, signal) {
+        for (const delay_ms of delays_ms)
+            try {
+                return await ask();
+            } catch (problem) {
+                if (!is_turned_away(problem.status)) throw problem;
+                this.#wait(job, problem.message);
+                await pause(Math.max(delay_ms, problem.wait_ms), signal);
+                signal.throwIfAborted();
+            }
+        return ask();
+    }
+
+    #wait(job, words) {
+        if (job.waits !== words) this.#announce(`${job.file.name} waits: ${words}`);
+        this.#update(job, { waits: words });
     }
 
     #update(job, change) {
