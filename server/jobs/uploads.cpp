@@ -1,6 +1,7 @@
 #include "server/jobs/uploads.h"
 
 #include <fcntl.h>
+#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -59,7 +60,8 @@ void Uploads::recover() {
     complete_whole_ones();
 }
 
-/// What was received to its last byte, and a crash kept from becoming a blob: its sender may not ask again.
+/// What was received to its last byte, and a crash kept from becoming a blob: its sender may not ask again. What cannot
+/// become one now (the disk is full) stays as it is, and an empty PATCH tries again; the service starts without it.
 void Uploads::complete_whole_ones() {
     std::vector<std::string> whole;
     database_.read([&](Sql& sql) {
@@ -68,8 +70,8 @@ void Uploads::complete_whole_ones() {
     });
     for (const std::string& id : whole) try {
             complete(id);
-        } catch (const Refusal&) {
-            // its bytes are not those that were announced: it is gone
+        } catch (const std::exception& error) {  // or its bytes are not those that were announced: then it is gone
+            spdlog::warn("the whole upload {} did not become a blob: {}", id, error.what());
         }
 }
 
@@ -81,8 +83,8 @@ void Uploads::expire() {
     });
     for (const std::string& id : old) try {
             remove(id);
-        } catch (const Refusal&) {
-            // it grows just now
+        } catch (const std::exception& error) {  // it grows just now, or the disk is full
+            spdlog::warn("the expired upload {} stays: {}", id, error.what());
         }
 }
 

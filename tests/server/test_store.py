@@ -193,6 +193,25 @@ class Restarts(unittest.TestCase):
                 self.assertEqual(d.wait(bake)["state"], "done")
                 self.assertEqual(sha256(d.ask("GET", file["href"]).body), file["sha256"])
 
+    def test_a_whole_upload_that_cannot_become_a_blob_at_the_start_waits_for_its_sender(self):
+        with Daemon() as d:
+            Blobs.become_bound_to_modes(d)
+            data = hair_bytes()
+            upload = d.create_upload(data).headers["Location"]
+            self.assertEqual(d.append(upload, 0, data[:-1]).status, 204)
+            d.stop()
+            file = d.path / "store/uploads" / upload.rsplit("/", 1)[1]
+            with open(file, "ab") as grown:
+                grown.write(data[-1:])  # as a kill leaves it between the last byte and the commit
+            file.chmod(0)
+            d.start()
+            self.assertEqual(d.ask("HEAD", f"/v1/blobs/{sha256(data)}").status, 404)
+            self.assertEqual(d.ask("HEAD", upload, headers=TUS).headers["Upload-Offset"], str(len(data)))
+            file.chmod(0o640)
+            reply = d.append(upload, len(data), b"")
+            self.assertEqual((reply.status, reply.headers["Hairbake-Blob"]), (204, f"/v1/blobs/{sha256(data)}"))
+            self.assertEqual(d.ask("GET", f"/v1/blobs/{sha256(data)}").body, data)
+
     def test_a_spoiled_input_fails_the_bake_instead_of_giving_a_wrong_result(self):
         with Daemon() as d:
             data = hair_bytes()
