@@ -55,7 +55,8 @@ void note_names(Sql& sql, const BakePlan& plan) {
 Queue::Queue(Database& database, BlobStore& store, int max_crashes)
     : database_(database), store_(store), max_crashes_(max_crashes) {}
 
-void Queue::recover(const std::vector<std::string>& lost_blobs) {
+std::size_t Queue::recover() {
+    std::size_t lost = 0;
     database_.write([&](Sql& sql) {
         std::vector<std::string> interrupted;
         for (const SqlRow& row : sql.rows("SELECT key FROM stages WHERE state = 'running'"))
@@ -64,8 +65,19 @@ void Queue::recover(const std::vector<std::string>& lost_blobs) {
             sql.run("UPDATE stages SET state = ? WHERE key = ?", {needed(sql, stage) ? "queued" : "cancelled", stage});
             settle_bakes_of(sql, stage);
         }
+        lost = requeue_incomplete(sql);
     });
-    for (const std::string& digest : lost_blobs) blob_lost(digest);
+    return lost;
+}
+
+/// It trusts no list of what was just found missing: an earlier start may have died after it had forgotten the blobs.
+std::size_t Queue::requeue_incomplete(Sql& sql) {
+    const std::string not_stored = "NOT EXISTS(SELECT 1 FROM blobs b WHERE b.sha256 = ";
+    sql.run("UPDATE inputs SET thumbnail = NULL WHERE thumbnail IS NOT NULL AND " + not_stored + "thumbnail)");
+    sql.run("DELETE FROM inputs WHERE " + not_stored + "inputs.sha256)");
+    const auto stages = sql.rows("SELECT DISTINCT stage FROM stage_files f WHERE " + not_stored + "f.sha256)");
+    for (const SqlRow& row : stages) requeue_stage(sql, row.text(0));
+    return stages.size();
 }
 
 // ---- taking requests -----------------------------------------------------------------------------------------------
@@ -215,14 +227,12 @@ void Queue::requeue_stage(Sql& sql, const std::string& stage) {
     }
 }
 
-void Queue::blob_lost(const std::string& digest) {
-    database_.write([&](Sql& sql) {
-        sql.run("UPDATE inputs SET thumbnail = NULL WHERE thumbnail = ?", {digest});
-        sql.run("DELETE FROM inputs WHERE sha256 = ?", {digest});
-        for (const SqlRow& row : sql.rows("SELECT DISTINCT stage FROM stage_files WHERE sha256 = ?", {digest}))
-            requeue_stage(sql, row.text(0));
-    });
-    wake();
+void Queue::blob_lost(Sql& sql, const std::string& digest) {
+    sql.run("UPDATE inputs SET thumbnail = NULL WHERE thumbnail = ?", {digest});
+    sql.run("DELETE FROM inputs WHERE sha256 = ?", {digest});
+    for (const SqlRow& row : sql.rows("SELECT DISTINCT stage FROM stage_files WHERE sha256 = ?", {digest}))
+        requeue_stage(sql, row.text(0));
+    wake();  // who claims waits for the writer's lock, and so for the commit
 }
 
 // ---- slots ---------------------------------------------------------------------------------------------------------

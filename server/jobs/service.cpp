@@ -38,10 +38,9 @@ Service::Service(const Settings& settings)
       catalog_(database_, store_, runner_),
       uploads_(database_, store_, settings.store / "uploads",
                {settings.upload_lifetime_s, settings.blob_bytes, settings.budget_bytes, settings.open_uploads}) {
-    const std::vector<std::string> lost = store_.recover();
-    if (!lost.empty()) spdlog::warn("{} blobs were lost; what needs them is baked again", lost.size());
+    if (const std::size_t lost = store_.recover()) spdlog::warn("{} blobs were lost", lost);
     uploads_.recover();
-    queue_.recover(lost);
+    if (const std::size_t lost = queue_.recover()) spdlog::warn("{} stages lost files; they are baked again", lost);
     prune(database_, now() - settings_.keep_failed_s);
     slots_ = std::make_unique<Slots>(queue_, runner_, database_, store_, settings_.budget_bytes, settings_.workers,
                                      settings_.worker_threads);
@@ -96,10 +95,9 @@ bool Service::store_blob(IncomingFile& file, const std::string& expected_digest)
 }
 
 OpenBlob Service::open_blob(const std::string& digest) try {
-    return store_.open(digest);
+    return store_.open(digest, [&](Sql& sql) { queue_.blob_lost(sql, digest); });
 } catch (const LostBlob& lost) {
     spdlog::error("{}", lost.what());
-    queue_.blob_lost(lost.digest());
     throw Refusal(Refused::busy, std::string(lost.what()) + "; a result is baked again, an input must be sent again");
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -24,7 +25,8 @@ bool is_digest(const std::string& text);
 /// Where a blob lies in the folder blobs: "ab/<sha256>".
 std::string blob_name(const std::string& digest);
 
-/// A blob turned out to be missing or of other bytes than its name says. The store has forgotten it already.
+/// A blob turned out to be missing or of other bytes than its name says. The store has forgotten it already, and in the
+/// same transaction was done what follows from that (BlobStore::OnLoss).
 class LostBlob : public std::runtime_error {
 public:
     explicit LostBlob(std::string digest)
@@ -45,11 +47,14 @@ struct OpenBlob {
 /// server/README.md.
 class BlobStore {
 public:
+    /// What follows from the loss of a blob, in the transaction that forgets it.
+    using OnLoss = std::function<void(Sql&)>;
+
     BlobStore(const std::filesystem::path& folder, Database& database);
 
     /// At boot, before anything else: empties tmp/, removes files without a row, and forgets rows without a whole file.
-    /// Those digests are returned.
-    std::vector<std::string> recover();
+    /// Returns how many these were; what refers to them is Queue::recover()'s.
+    std::size_t recover();
 
     std::filesystem::path incoming_folder() const { return folder_ / "tmp"; }
     std::filesystem::path path_of(const std::string& digest) const;
@@ -68,7 +73,10 @@ public:
 
     /// Opens a blob; checks its digest when it is the first time since the start. Throws Refusal(not_found), LostBlob,
     /// and Refusal(busy) for a file that cannot be read now, which is not forgotten.
-    OpenBlob open(const std::string& digest);
+    OpenBlob open(const std::string& digest, const OnLoss& on_loss);
+
+    /// Forgets a blob whose bytes are not those of its name.
+    void lose(const std::string& digest, const OnLoss& on_loss);
 
     /// Removes rows and files, in one transaction.
     void remove(const std::vector<std::string>& digests);
@@ -79,10 +87,10 @@ public:
 
 private:
     bool is_verified(const std::string& digest);
-    void verify(const std::string& digest, int descriptor);
+    void verify(const std::string& digest, int descriptor, const OnLoss& on_loss);
     [[noreturn]] static void refuse_for_now(const std::string& digest);
-    [[noreturn]] void lose_if_missing(const std::string& digest);
-    void forget(const std::vector<std::string>& digests);
+    [[noreturn]] void lose_if_missing(const std::string& digest, const OnLoss& on_loss);
+    void forget(const std::vector<std::string>& digests, const OnLoss& on_loss = {});
 
     std::filesystem::path folder_;
     Database& database_;

@@ -212,6 +212,32 @@ class Restarts(unittest.TestCase):
             self.assertEqual((reply.status, reply.headers["Hairbake-Blob"]), (204, f"/v1/blobs/{sha256(data)}"))
             self.assertEqual(d.ask("GET", f"/v1/blobs/{sha256(data)}").body, data)
 
+    def test_a_blob_that_was_forgotten_and_not_baked_again_is_found_at_the_next_start(self):
+        """As a kill leaves the database between the two."""
+        with Daemon() as d:
+            hair, gone = d.put(hair_bytes()), d.put(hair_bytes(seed=1))
+            self.assertEqual(d.ask("POST", "/v1/models", {"sha256": gone}).status, 201)
+            requests = [quick_request(model) for model in (hair, gone)]
+            bakes = [d.ask("POST", "/v1/bakes", request).json["id"] for request in requests]
+            files = [next(f for f in d.wait(bake)["files"] if f["name"] == "transmittance.npy") for bake in bakes]
+            d.stop()
+            for digest in (gone, *(file["sha256"] for file in files)):
+                self.alter(d, f"DELETE FROM blobs WHERE sha256 = '{digest}'")
+                d.blob_file(digest).unlink()
+            d.start()
+            view = d.wait(bakes[0])
+            self.assertEqual((view["state"], view["stages"][0]["attempts"]), ("done", 1))  # of the new run
+            self.assertEqual(sha256(d.ask("GET", files[0]["href"]).body), files[0]["sha256"])
+            # Of the other the model is gone, too: that is said, and its facts are no longer told.
+            view = d.wait(bakes[1])
+            self.assertEqual((view["state"], view["error"]["kind"]), ("failed", "bad_input"), view)
+            self.assertIn("send the input again", view["error"]["message"])
+            with contextlib.closing(sqlite3.connect(d.path / "store/hairbake.db")) as database:
+                self.assertEqual(database.execute("SELECT count(*) FROM inputs").fetchone(), (0,))
+            self.assertEqual(d.put(hair_bytes(seed=1)), gone)
+            self.assertEqual(d.ask("POST", "/v1/bakes", requests[1]).status, 202)
+            self.assertEqual(d.wait(bakes[1])["state"], "done")
+
     def test_a_spoiled_input_fails_the_bake_instead_of_giving_a_wrong_result(self):
         with Daemon() as d:
             data = hair_bytes()
