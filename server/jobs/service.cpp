@@ -80,18 +80,17 @@ std::unique_ptr<IncomingFile> Service::receive(std::uint64_t expected_bytes, con
     if (expected_bytes > settings_.blob_bytes)
         throw Refusal(Refused::too_large, "the body is " + std::to_string(expected_bytes) +
                                               " bytes long; allowed is up to " + std::to_string(settings_.blob_bytes));
-    const std::uint64_t room = settings_.budget_bytes - std::min(settings_.budget_bytes, expected_bytes);
     const bool known = is_digest(digest) && store_.size_of(digest);  // then nothing more will lie here
-    if (!known && !evict(database_, store_, room))
-        throw Refusal(Refused::full, "the store's budget of " + std::to_string(settings_.budget_bytes) +
-                                         " bytes is used up by what live bakes and names need");
+    if (!known) make_room(database_, store_, settings_.budget_bytes, expected_bytes);
     return std::make_unique<IncomingFile>(store_.incoming_folder(), settings_.blob_bytes);
 }
 
+/// There is room for what was announced, and a body in chunks announces nothing; others came meanwhile, too.
 bool Service::store_blob(IncomingFile& file, const std::string& expected_digest) {
-    const bool fresh = store_.put(file, expected_digest);
-    if (fresh) evict(database_, store_, settings_.budget_bytes, file.digest());
-    return fresh;
+    store_.check(file, expected_digest);
+    const auto held = database_.lock();
+    if (!store_.size_of(file.digest())) make_room(database_, store_, settings_.budget_bytes, file.bytes());
+    return store_.adopt(file.path(), file.digest());
 }
 
 OpenBlob Service::open_blob(const std::string& digest) try {

@@ -35,6 +35,9 @@ BlobStore::BlobStore(const fs::path& folder, Database& database) : folder_(folde
         for (const char low : std::string(digits)) make_folder(folder_ / "blobs" / std::string{high, low});
     sync_folder(folder_ / "blobs");
     sync_folder(folder_);
+    database_.read([&](Sql& sql) {
+        total_bytes_ = static_cast<std::uint64_t>(sql.rows("SELECT sum(bytes) FROM blobs").at(0).integer(0));
+    });
 }
 
 fs::path BlobStore::path_of(const std::string& digest) const { return folder_ / "blobs" / blob_name(digest); }
@@ -70,20 +73,13 @@ std::optional<std::uint64_t> BlobStore::size_of(const std::string& digest) {
     return bytes;
 }
 
-std::uint64_t BlobStore::total_bytes() {
-    std::int64_t bytes = 0;
-    database_.read([&](Sql& sql) { bytes = sql.rows("SELECT sum(bytes) FROM blobs").at(0).integer(0); });
-    return static_cast<std::uint64_t>(bytes);
-}
-
-bool BlobStore::put(IncomingFile& file, const std::string& expected) {
+void BlobStore::check(IncomingFile& file, const std::string& expected) {
     file.finish();
     if (!expected.empty() && file.digest() != expected)
         throw Refusal(Refused::unprocessable,
                       "the digest of the " + std::to_string(file.bytes()) + " bytes received is " + file.digest() +
                           "; allowed is " + expected,
                       "sha256");
-    return adopt(file.path(), file.digest());
 }
 
 bool BlobStore::adopt(const fs::path& file, const std::string& digest) {
@@ -97,6 +93,7 @@ bool BlobStore::adopt(const fs::path& file, const std::string& digest) {
         database_.write([&](Sql& sql) {
             sql.run("INSERT OR IGNORE INTO blobs VALUES(?, ?, ?, ?)", {digest, bytes, now(), now()});
         });
+        if (!known) total_bytes_ += static_cast<std::uint64_t>(bytes);
         const std::lock_guard lock(mutex_);
         verified_.insert(digest);
     }
@@ -165,10 +162,15 @@ void BlobStore::remove(const std::vector<std::string>& digests) {
 }
 
 void BlobStore::forget(const std::vector<std::string>& digests, const OnLoss& on_loss) {
+    const auto held = database_.lock();
+    std::int64_t bytes = 0;
     database_.write([&](Sql& sql) {
-        for (const std::string& digest : digests) sql.run("DELETE FROM blobs WHERE sha256 = ?", {digest});
+        for (const std::string& digest : digests)
+            for (const SqlRow& row : sql.rows("DELETE FROM blobs WHERE sha256 = ? RETURNING bytes", {digest}))
+                bytes += row.integer(0);
         if (on_loss) on_loss(sql);
     });
+    total_bytes_ -= static_cast<std::uint64_t>(bytes);
     const std::lock_guard lock(mutex_);
     for (const std::string& digest : digests) {
         verified_.erase(digest);
@@ -178,18 +180,18 @@ void BlobStore::forget(const std::vector<std::string>& digests, const OnLoss& on
 
 void BlobStore::touch(const std::string& digest) {
     const std::lock_guard lock(mutex_);
-    used_.insert(digest);
+    used_[digest] = now();
 }
 
 void BlobStore::flush_uses() {
-    std::unordered_set<std::string> used;
+    std::unordered_map<std::string, double> used;
     {
         const std::lock_guard lock(mutex_);
         used.swap(used_);
     }
     if (used.empty()) return;
     database_.write([&](Sql& sql) {
-        for (const std::string& digest : used) sql.run("UPDATE blobs SET used = ? WHERE sha256 = ?", {now(), digest});
+        for (const auto& [digest, time] : used) sql.run("UPDATE blobs SET used = ? WHERE sha256 = ?", {time, digest});
     });
 }
 

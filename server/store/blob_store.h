@@ -1,6 +1,7 @@
 // Files named by the digest of their bytes.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -9,6 +10,7 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <unordered_map>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -61,11 +63,10 @@ public:
 
     /// Size in bytes, or nothing when there is no such blob.
     std::optional<std::uint64_t> size_of(const std::string& digest);
-    std::uint64_t total_bytes();
+    std::uint64_t total_bytes() const { return total_bytes_; }
 
-    /// Takes a received file over under its digest. Throws Refusal(unprocessable) when `expected` is not empty and
-    /// another digest. Returns whether the blob is new.
-    bool put(IncomingFile& file, const std::string& expected);
+    /// Finishes a received file. Throws Refusal(unprocessable) when `expected` is not empty and another digest.
+    static void check(IncomingFile& file, const std::string& expected);
 
     /// Takes over a file that is on the disk already (fsync done) and whose digest was checked. Returns whether the
     /// blob is new. It also takes the place of stored bytes that were not verified since the start.
@@ -94,8 +95,10 @@ private:
 
     std::filesystem::path folder_;
     Database& database_;
-    std::mutex mutex_;  ///< of the two sets
-    std::unordered_set<std::string> verified_, used_;
+    std::atomic<std::uint64_t> total_bytes_ = 0;  ///< what the table says, changed under database_.lock()
+    std::mutex mutex_;                            ///< of what follows
+    std::unordered_set<std::string> verified_;
+    std::unordered_map<std::string, double> used_;  ///< when
 };
 
 /// Seconds since 1970.

@@ -445,6 +445,67 @@ class Budget(unittest.TestCase):
             for data in kept:
                 self.assertEqual(d.ask("GET", f"/v1/blobs/{sha256(data)}").body, data)
 
+    def test_a_body_in_chunks_that_does_not_fit_is_refused_when_it_is_whole(self):
+        with Daemon(config="budget_mb = 1\nblob_mb = 1") as d:
+            # Of 1,048,576 bytes 600,000 stay, as a name points at them.
+            kept, big, small = os.urandom(600_000), os.urandom(448_577), os.urandom(448_576)
+            d.ask("PUT", "/v1/names/mesh/kept", {"sha256": d.put(kept)})
+            file = {"Content-Type": "application/octet-stream"}
+            for reply in (d.ask("PUT", f"/v1/blobs/{sha256(big)}", iter([big])), d.ask("POST", "/v1/models", iter([big]), file)):
+                self.assertEqual((reply.status, reply.json["type"]), (507, "urn:hairbake:problem:full"), reply.body)
+                self.assertEqual(d.ask("HEAD", f"/v1/blobs/{sha256(big)}").status, 404)
+                self.assertEqual(d.leftovers(), [])
+            self.assertEqual(d.ask("PUT", f"/v1/blobs/{sha256(small)}", iter([small])).status, 201)
+            self.assertEqual(d.ask("PUT", f"/v1/blobs/{sha256(kept)}", iter([kept])).status, 200)  # known: needs no room
+            self.assertEqual(d.ask("GET", f"/v1/blobs/{sha256(small)}").body, small)
+
+    def test_an_upload_that_finds_no_room_at_its_end_waits_for_it(self):
+        with Daemon(config="budget_mb = 1\nblob_mb = 1") as d:
+            data = os.urandom(500_000)
+            upload = d.create_upload(data).headers["Location"]
+            self.assertEqual(d.append(upload, 0, data[:1000]).status, 204)
+            kept = d.put(os.urandom(600_000))  # together more than 1,048,576
+            d.ask("PUT", "/v1/names/mesh/kept", {"sha256": kept})
+            reply = d.append(upload, 1000, data[1000:])
+            self.assertEqual((reply.status, reply.json["type"]), (507, "urn:hairbake:problem:full"), reply.body)
+            for _ in range(2):  # before and after a start
+                self.assertEqual(d.ask("HEAD", upload, headers=TUS).headers["Upload-Offset"], str(len(data)))
+                self.assertEqual(d.append(upload, len(data), b"").status, 507)
+                self.assertEqual(d.ask("HEAD", f"/v1/blobs/{sha256(data)}").status, 404)
+                self.assertEqual(d.ask("HEAD", f"/v1/blobs/{kept}").status, 200)
+                self.assertEqual(d.leftovers(), [])
+                d.stop()
+                d.start()
+            d.ask("PUT", "/v1/names/mesh/kept", {"sha256": d.put(b"less")})
+            reply = d.append(upload, len(data), b"")
+            self.assertEqual((reply.status, reply.headers["Hairbake-Blob"]), (204, f"/v1/blobs/{sha256(data)}"))
+            self.assertEqual(d.ask("GET", f"/v1/blobs/{sha256(data)}").body, data)
+            self.assertEqual(d.ask("HEAD", upload, headers=TUS).status, 404)
+
+    def test_results_go_until_three_hundredths_are_free_and_inputs_no_more_than_must(self):
+        with Daemon(config="budget_mb = 1\nblob_mb = 1") as d:
+            budget, models, bakes = 1 << 20, [], []
+            for seed in range(12):
+                models.append(d.put(hair_bytes(strands=4, points=4, seed=seed)))
+                bakes.append(d.ask("POST", "/v1/bakes", quick_request(models[-1])).json["id"])
+                self.assertEqual(d.wait(bakes[-1])["state"], "done")
+            results = [sum(file["bytes"] for file in d.ask("GET", f"/v1/bakes/{bake}").json["files"][1:]) for bake in bakes]
+            self.assertGreater(sum(results[1:]), budget // 100 * 3)  # or there would not be enough to go
+            d.put(os.urandom(budget - self.stored(d)))  # it fits to the byte: all stay
+            self.assertEqual({d.ask("GET", f"/v1/bakes/{bake}").status for bake in bakes}, {200})
+            d.put(b"x")
+            gone = [size for bake, size in zip(bakes, results) if d.ask("GET", f"/v1/bakes/{bake}").status == 404]
+            free = budget - self.stored(d)
+            self.assertGreaterEqual(free, budget // 100 * 3)
+            self.assertLess(free - max(gone), budget // 100 * 3)  # the last that went had to go
+            self.assertLess(len(gone), len(bakes))
+            for model in models:
+                self.assertEqual(d.ask("HEAD", f"/v1/blobs/{model}").status, 200)
+
+    @staticmethod
+    def stored(d):
+        return sum(file.stat().st_size for file in (d.path / "store/blobs").rglob("*") if file.is_file())
+
     def test_the_oldest_results_go_first_and_what_is_needed_stays(self):
         with Daemon(config="budget_mb = 1\nblob_mb = 1") as d:
             hair = d.put(hair_bytes())
