@@ -46,8 +46,8 @@ void note_names(Sql& sql, const BakePlan& plan) {
     sql.run("UPDATE bakes SET names = json_patch(names, ?) WHERE id = ?", {plan.names, plan.id});
     sql.run(
         "INSERT OR REPLACE INTO bake_names SELECT ?, key, json_extract(value, '$.path'), json_extract(value, "
-        "'$.version') FROM json_each(?)",
-        {plan.id, plan.names});
+        "'$.version'), (SELECT seq FROM bakes WHERE id = ?) FROM json_each(?)",
+        {plan.id, plan.id, plan.names});
 }
 
 }  // namespace
@@ -113,8 +113,10 @@ void Queue::add_stage(Sql& sql, const StagePlan& stage, int priority) {
 Submitted Queue::add_bake(Sql& sql, const BakePlan& plan) {
     const auto rows = sql.rows("SELECT state FROM bakes WHERE id = ?", {plan.id});
     const std::string state = rows.empty() ? "" : rows[0].text(0);
-    note_names(sql, plan);
-    if (state == "done") return {plan.id, state, note_done(sql, plan.id, plan.names)};
+    if (state == "done") {
+        note_names(sql, plan);
+        return {plan.id, state, note_done(sql, plan.id, plan.names)};
+    }
     for (const StagePlan* stage : plan.stages()) add_stage(sql, *stage, plan.priority);
     if (rows.empty())
         sql.run(
@@ -129,6 +131,7 @@ Submitted Queue::add_bake(Sql& sql, const BakePlan& plan) {
             "UPDATE bakes SET state = 'queued', priority = ?, attempts = attempts + 1, error = NULL, finished = NULL "
             "WHERE id = ?",
             {std::int64_t(plan.priority), plan.id});
+    note_names(sql, plan);
     settle_bake(sql, plan.id);
     const std::string after = sql.rows("SELECT state FROM bakes WHERE id = ?", {plan.id}).at(0).text(0);
     return {plan.id, after, false};
@@ -152,7 +155,8 @@ std::vector<Submitted> Queue::submit(const std::vector<BakePlan>& plans, const s
         for (const BakePlan& plan : plans) answers.push_back(add_bake(sql, plan));
         if (batch.empty()) return;
         sql.run("INSERT INTO batches(id, request, created) VALUES(?, ?, ?)", {batch, batch_request, now()});
-        for (const BakePlan& plan : plans) sql.run("INSERT OR IGNORE INTO batch_bakes VALUES(?, ?)", {batch, plan.id});
+        for (const BakePlan& plan : plans)
+            sql.run("INSERT OR IGNORE INTO batch_bakes SELECT ?, id, seq FROM bakes WHERE id = ?", {batch, plan.id});
     });
     wake();
     return answers;

@@ -252,13 +252,27 @@ class Restarts(unittest.TestCase):
 
     def test_a_store_of_the_version_before_is_taken_over_and_one_of_a_later_version_is_not(self):
         with Daemon() as d:
-            bake = d.ask("POST", "/v1/bakes", quick_request(d.put(hair_bytes()))).json["id"]
+            hair, sky = d.put(hair_bytes()), d.put(hdr_bytes())
+            d.ask("PUT", "/v1/names/environment/sky", {"sha256": sky})
+            old = d.ask("POST", "/v1/bakes", {**quick_request(hair), "environment": "name:sky"}).json["id"]
+            self.assertEqual(d.wait(old)["state"], "done")
+            batch = d.ask("POST", "/v1/rebakes", {"name": "sky", "environment": f"sha256:{d.put(hdr_bytes(red=99))}"}).json["id"]
+            bake = d.ask("GET", f"/v1/bakes?batch={batch}").json["bakes"][0]["id"]
             self.assertEqual(d.wait(bake)["state"], "done")
-            d.stop()
-            # Version 1 did not know who began an upload, version 2 only the last name that a bake was asked by.
-            self.alter(d, "ALTER TABLE uploads DROP COLUMN token; DROP TABLE bake_names; PRAGMA user_version = 1")
-            d.start()
-            self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}").json["state"], "done")
+            # Version 1 did not know who began an upload, version 2 only the last name that a bake was asked by, version 3
+            # not how old the bakes of a name and of a batch are.
+            before_4 = """DROP INDEX batch_bakes_by_age; ALTER TABLE batch_bakes DROP COLUMN seq; DROP INDEX bake_names_by_path;
+                ALTER TABLE bake_names DROP COLUMN seq; CREATE INDEX bake_names_by_path ON bake_names(path);
+                DROP INDEX inputs_by_blob; DROP INDEX inputs_by_thumbnail; """
+            before_2 = "ALTER TABLE uploads DROP COLUMN token; DROP TABLE bake_names; "
+            for version, statements in ((3, before_4), (1, before_4 + before_2)):
+                d.stop()
+                self.alter(d, f"{statements} PRAGMA user_version = {version}")
+                d.start()
+                self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}").json["state"], "done")
+                for question, found in ((f"batch={batch}", bake), ("name=sky", old)):
+                    self.assertEqual([b["id"] for b in d.ask("GET", f"/v1/bakes?{question}").json["bakes"]], [found])
+                self.assertEqual(d.ask("GET", f"/v1/batches/{batch}").json["states"]["done"], 1)
             reply = d.ask("POST", "/v1/uploads", headers={
                 "Tus-Resumable": "1.0.0", "Upload-Length": "9",
                 "Upload-Metadata": "sha256 " + base64.b64encode(sha256(b"some hair").encode()).decode()})
