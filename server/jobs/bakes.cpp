@@ -13,14 +13,12 @@ namespace hairbake {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr std::size_t most_views = 1000;
 
 // 0 id, 1 state, 2 request, 3 names, 4 hair, 5 environment, 6 priority, 7 transmittance, 8 irradiance, 9 attempts, 10
 // error, 11 created, 12 finished, 13 seq
 constexpr const char* bake_columns =
     "SELECT id, state, request, names, hair, environment, priority, transmittance, irradiance, attempts, error, "
-    "created, "
-    "finished, seq FROM bakes ";
+    "created, finished, b.seq FROM bakes b ";
 
 [[noreturn]] void refuse_unknown(const std::string& id) {
     throw Refusal(Refused::not_found, "there is no bake " + id.substr(0, 64));
@@ -84,6 +82,41 @@ void tell_name(Sql& sql, const std::string& path, Json& view) {
         view["names"][row.text(0)] = {{"path", path}, {"version", row.integer(1)}};
 }
 
+struct Selection {
+    std::string statement;
+    std::vector<SqlValue> values;
+};
+
+/// One page of the filtered bakes, and one more. The bakes of a batch or of a name are found by its own index, newest
+/// first, and no more of them are read than the page needs; a name may have a bake by several fields.
+Selection select_bakes(const BakeFilter& filter) {
+    std::string from = "WHERE b.seq < ?", order = " ORDER BY b.seq DESC LIMIT ?";
+    if (!filter.batch.empty()) {
+        from = "JOIN batch_bakes m ON b.seq = m.seq WHERE m.seq < ? AND m.batch = ?";
+        order = " ORDER BY m.seq DESC LIMIT ?";
+    } else if (!filter.name.empty()) {
+        from = "JOIN bake_names m ON b.seq = m.seq WHERE m.seq < ? AND m.path = ?";
+        order = " GROUP BY m.seq ORDER BY m.seq DESC LIMIT ?";
+    }
+    Selection selection{bake_columns + from, {filter.cursor}};
+    const auto add = [&](const std::string& value, const char* condition) {
+        if (value.empty()) return;
+        selection.statement += condition;
+        selection.values.emplace_back(value);
+    };
+    add(filter.batch, "");
+    if (filter.batch.empty())
+        add(filter.name, "");
+    else
+        add(filter.name, " AND b.id IN (SELECT bake FROM bake_names WHERE path = ?)");
+    add(filter.state, " AND state = ?");
+    add(filter.model, " AND hair = ?");
+    add(filter.environment, " AND environment = ?");
+    selection.statement += order;
+    selection.values.emplace_back(std::int64_t(filter.limit) + 1);
+    return selection;
+}
+
 Json full_view(Sql& sql, Queue& queue, const SqlRow& row) {
     Json json = short_view(row);
     json["stages"] = Json::array();
@@ -111,24 +144,8 @@ std::string stage_manifest(Sql& sql, const SqlRow& bake, std::size_t column) {
 
 }  // namespace
 
-std::optional<BakeView> Bakes::known_view(const std::string& id) {
-    const std::lock_guard lock(mutex_);
-    if (views_.version != database_.version()) return std::nullopt;
-    const auto found = views_.of.find(id);
-    if (found == views_.of.end()) return std::nullopt;
-    return found->second;
-}
-
-void Bakes::keep_view(std::uint64_t version, const std::string& id, const BakeView& view) {
-    const std::lock_guard lock(mutex_);
-    if (version < views_.version) return;
-    if (version > views_.version || views_.of.size() >= most_views) views_.of.clear();
-    views_.version = version;
-    views_.of[id] = view;
-}
-
 BakeView Bakes::get(const std::string& id) {
-    if (auto view = known_view(id)) return *view;
+    if (auto view = done_.find(id)) return *view;
     std::uint64_t version = 0;
     bool done = false;
     BakeView answer;
@@ -140,27 +157,15 @@ BakeView Bakes::get(const std::string& id) {
         done = rows[0].text(1) == "done";
     });
     answer.digest = Digest().add(answer.json).hex();
-    if (done) keep_view(version, id, answer);
+    if (done) done_.keep(version, id, answer);
     return answer;
 }
 
 std::string Bakes::list(const BakeFilter& filter) {
-    std::string where = "WHERE seq < ?";
-    std::vector<SqlValue> values{filter.cursor};
-    const auto add = [&](const std::string& value, const char* condition) {
-        if (value.empty()) return;
-        where += condition;
-        values.emplace_back(value);
-    };
-    add(filter.state, " AND state = ?");
-    add(filter.model, " AND hair = ?");
-    add(filter.environment, " AND environment = ?");
-    add(filter.name, " AND id IN (SELECT bake FROM bake_names WHERE path = ?)");
-    add(filter.batch, " AND id IN (SELECT bake FROM batch_bakes WHERE batch = ?)");
-    values.emplace_back(std::int64_t(filter.limit) + 1);
+    const Selection selection = select_bakes(filter);
     Json answer{{"bakes", Json::array()}, {"next", nullptr}};
     database_.read([&](Sql& sql) {
-        const auto rows = sql.rows(bake_columns + where + " ORDER BY seq DESC LIMIT ?", values);
+        const auto rows = sql.rows(selection.statement, selection.values);
         const auto limit = static_cast<std::size_t>(filter.limit);
         for (std::size_t i = 0; i < std::min(limit, rows.size()); ++i) {
             answer["bakes"].push_back(short_view(rows[i]));

@@ -2,11 +2,10 @@
 #pragma once
 
 #include <cstdint>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <unordered_map>
 
+#include "server/jobs/kept_views.h"
 #include "server/jobs/queue.h"
 
 namespace hairbake {
@@ -33,7 +32,7 @@ struct BakeView {
 /// Thread-safe. Answers are JSON objects.
 class Bakes {
 public:
-    Bakes(Database& database, Queue& queue) : database_(database), queue_(queue) {}
+    Bakes(Database& database, Queue& queue) : database_(database), queue_(queue), done_(database) {}
 
     /// Throws Refusal(not_found).
     BakeView get(const std::string& id);
@@ -43,18 +42,9 @@ public:
     BakeFile file(const std::string& id, const std::string& name);
 
 private:
-    /// Views of done bakes at one version of the database: they are asked for again and again.
-    struct Views {
-        std::uint64_t version = 0;
-        std::unordered_map<std::string, BakeView> of;
-    };
-    std::optional<BakeView> known_view(const std::string& id);
-    void keep_view(std::uint64_t version, const std::string& id, const BakeView& view);
-
     Database& database_;
     Queue& queue_;
-    std::mutex mutex_;  ///< of the views
-    Views views_;
+    KeptViews<BakeView> done_;  ///< of done bakes: how far others are is not in the database
 };
 
 }  // namespace hairbake

@@ -140,15 +140,18 @@ std::string Batches::rebake(const std::string& text, bool dry_run) {
 }
 
 std::string Batches::get(const std::string& id) {
+    if (auto view = views_.find(id)) return *view;
+    std::uint64_t version = 0;
     Json answer;
     database_.read([&](Sql& sql) {
+        version = database_.version_read();
         const auto rows = sql.rows("SELECT id, request, created FROM batches WHERE id = ?", {id});
         if (rows.empty()) throw Refusal(Refused::not_found, "there is no batch " + id.substr(0, 64));
         answer = {{"id", id}, {"created", time_text(rows[0].number(2))}};
         std::int64_t total = 0;
         Json counts{{"queued", 0}, {"running", 0}, {"done", 0}, {"failed", 0}, {"cancelled", 0}};
         for (const SqlRow& row :
-             sql.rows("SELECT b.state, count(*) FROM batch_bakes m JOIN bakes b ON b.id = m.bake WHERE "
+             sql.rows("SELECT b.state, count(*) FROM batch_bakes m JOIN bakes b ON b.seq = m.seq WHERE "
                       "m.batch = ? GROUP BY b.state",
                       {id})) {
             counts[row.text(0)] = row.integer(1);
@@ -159,7 +162,9 @@ std::string Batches::get(const std::string& id) {
         answer["request"] = Json::parse(rows[0].text(1));
         answer["links"] = {{"self", "/v1/batches/" + id}, {"bakes", "/v1/bakes?batch=" + id}};
     });
-    return answer.dump();
+    const std::string text = answer.dump();
+    views_.keep(version, id, text);
+    return text;
 }
 
 }  // namespace hairbake

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "server/jobs/kept_views.h"
 #include "server/jobs/queue.h"
 
 namespace hairbake {
@@ -10,7 +11,7 @@ namespace hairbake {
 /// Thread-safe. Answers are JSON objects.
 class Batches {
 public:
-    Batches(Database& database, Queue& queue) : database_(database), queue_(queue) {}
+    Batches(Database& database, Queue& queue) : database_(database), queue_(queue), views_(database) {}
 
     /// `text`: {"environment": NEW, and one of "bakes": [ids], "replaces": ENVIRONMENT, "name": NAME, "models": [...],
     /// and optionally "irradiance": {...}, "priority"}. Each affected bake is asked for again with the new environment;
@@ -26,6 +27,7 @@ public:
 private:
     Database& database_;
     Queue& queue_;
+    KeptViews<std::string> views_;
 };
 
 }  // namespace hairbake

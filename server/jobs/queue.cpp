@@ -46,8 +46,8 @@ void note_names(Sql& sql, const BakePlan& plan) {
     sql.run("UPDATE bakes SET names = json_patch(names, ?) WHERE id = ?", {plan.names, plan.id});
     sql.run(
         "INSERT OR REPLACE INTO bake_names SELECT ?, key, json_extract(value, '$.path'), json_extract(value, "
-        "'$.version') FROM json_each(?)",
-        {plan.id, plan.names});
+        "'$.version'), (SELECT seq FROM bakes WHERE id = ?) FROM json_each(?)",
+        {plan.id, plan.id, plan.names});
 }
 
 }  // namespace
@@ -55,7 +55,8 @@ void note_names(Sql& sql, const BakePlan& plan) {
 Queue::Queue(Database& database, BlobStore& store, int max_crashes)
     : database_(database), store_(store), max_crashes_(max_crashes) {}
 
-void Queue::recover(const std::vector<std::string>& lost_blobs) {
+std::size_t Queue::recover() {
+    std::size_t lost = 0;
     database_.write([&](Sql& sql) {
         std::vector<std::string> interrupted;
         for (const SqlRow& row : sql.rows("SELECT key FROM stages WHERE state = 'running'"))
@@ -64,8 +65,19 @@ void Queue::recover(const std::vector<std::string>& lost_blobs) {
             sql.run("UPDATE stages SET state = ? WHERE key = ?", {needed(sql, stage) ? "queued" : "cancelled", stage});
             settle_bakes_of(sql, stage);
         }
+        lost = requeue_incomplete(sql);
     });
-    for (const std::string& digest : lost_blobs) blob_lost(digest);
+    return lost;
+}
+
+/// It trusts no list of what was just found missing: an earlier start may have died after it had forgotten the blobs.
+std::size_t Queue::requeue_incomplete(Sql& sql) {
+    const std::string not_stored = "NOT EXISTS(SELECT 1 FROM blobs b WHERE b.sha256 = ";
+    sql.run("UPDATE inputs SET thumbnail = NULL WHERE thumbnail IS NOT NULL AND " + not_stored + "thumbnail)");
+    sql.run("DELETE FROM inputs WHERE " + not_stored + "inputs.sha256)");
+    const auto stages = sql.rows("SELECT DISTINCT stage FROM stage_files f WHERE " + not_stored + "f.sha256)");
+    for (const SqlRow& row : stages) requeue_stage(sql, row.text(0));
+    return stages.size();
 }
 
 // ---- taking requests -----------------------------------------------------------------------------------------------
@@ -101,8 +113,10 @@ void Queue::add_stage(Sql& sql, const StagePlan& stage, int priority) {
 Submitted Queue::add_bake(Sql& sql, const BakePlan& plan) {
     const auto rows = sql.rows("SELECT state FROM bakes WHERE id = ?", {plan.id});
     const std::string state = rows.empty() ? "" : rows[0].text(0);
-    note_names(sql, plan);
-    if (state == "done") return {plan.id, state, note_done(sql, plan.id, plan.names)};
+    if (state == "done") {
+        note_names(sql, plan);
+        return {plan.id, state, note_done(sql, plan.id, plan.names)};
+    }
     for (const StagePlan* stage : plan.stages()) add_stage(sql, *stage, plan.priority);
     if (rows.empty())
         sql.run(
@@ -117,6 +131,7 @@ Submitted Queue::add_bake(Sql& sql, const BakePlan& plan) {
             "UPDATE bakes SET state = 'queued', priority = ?, attempts = attempts + 1, error = NULL, finished = NULL "
             "WHERE id = ?",
             {std::int64_t(plan.priority), plan.id});
+    note_names(sql, plan);
     settle_bake(sql, plan.id);
     const std::string after = sql.rows("SELECT state FROM bakes WHERE id = ?", {plan.id}).at(0).text(0);
     return {plan.id, after, false};
@@ -140,7 +155,8 @@ std::vector<Submitted> Queue::submit(const std::vector<BakePlan>& plans, const s
         for (const BakePlan& plan : plans) answers.push_back(add_bake(sql, plan));
         if (batch.empty()) return;
         sql.run("INSERT INTO batches(id, request, created) VALUES(?, ?, ?)", {batch, batch_request, now()});
-        for (const BakePlan& plan : plans) sql.run("INSERT OR IGNORE INTO batch_bakes VALUES(?, ?)", {batch, plan.id});
+        for (const BakePlan& plan : plans)
+            sql.run("INSERT OR IGNORE INTO batch_bakes SELECT ?, id, seq FROM bakes WHERE id = ?", {batch, plan.id});
     });
     wake();
     return answers;
@@ -215,14 +231,12 @@ void Queue::requeue_stage(Sql& sql, const std::string& stage) {
     }
 }
 
-void Queue::blob_lost(const std::string& digest) {
-    database_.write([&](Sql& sql) {
-        sql.run("UPDATE inputs SET thumbnail = NULL WHERE thumbnail = ?", {digest});
-        sql.run("DELETE FROM inputs WHERE sha256 = ?", {digest});
-        for (const SqlRow& row : sql.rows("SELECT DISTINCT stage FROM stage_files WHERE sha256 = ?", {digest}))
-            requeue_stage(sql, row.text(0));
-    });
-    wake();
+void Queue::blob_lost(Sql& sql, const std::string& digest) {
+    sql.run("UPDATE inputs SET thumbnail = NULL WHERE thumbnail = ?", {digest});
+    sql.run("DELETE FROM inputs WHERE sha256 = ?", {digest});
+    for (const SqlRow& row : sql.rows("SELECT DISTINCT stage FROM stage_files WHERE sha256 = ?", {digest}))
+        requeue_stage(sql, row.text(0));
+    wake();  // who claims waits for the writer's lock, and so for the commit
 }
 
 // ---- slots ---------------------------------------------------------------------------------------------------------

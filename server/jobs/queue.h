@@ -48,8 +48,9 @@ class Queue {
 public:
     Queue(Database& database, BlobStore& store, int max_crashes);
 
-    /// At boot: what ran is queued again; stages that lost a blob too.
-    void recover(const std::vector<std::string>& lost_blobs);
+    /// At boot: what ran is queued again, and so are stages whose files are not all stored; inputs that are not stored
+    /// are forgotten. Returns how many stages had lost a file.
+    std::size_t recover();
 
     /// Whether the bake is done and `names` (as in BakePlan) are noted with it; then its stages count as used just now.
     bool note_done(Sql& sql, const std::string& bake, const std::string& names);
@@ -75,8 +76,8 @@ public:
     /// Throws Refusal(not_found); Refusal(conflict) when the bake has ended.
     void cancel(const std::string& bake);
 
-    /// A blob is gone: stages that wrote it are queued again with their bakes.
-    void blob_lost(const std::string& digest);
+    /// A blob is gone: stages that wrote it are queued again with their bakes, in the transaction that forgets it.
+    void blob_lost(Sql& sql, const std::string& digest);
 
     void stop();
     bool stopping() const { return stopping_; }
@@ -89,6 +90,7 @@ private:
     void settle_bakes_of(Sql& sql, const std::string& stage);
     void drop_unneeded(Sql& sql, const std::string& stage);
     void requeue_stage(Sql& sql, const std::string& stage);
+    std::size_t requeue_incomplete(Sql& sql);
     void finish_claim(const ClaimedStage& stage);
     void wake();
 

@@ -38,10 +38,9 @@ Service::Service(const Settings& settings)
       catalog_(database_, store_, runner_),
       uploads_(database_, store_, settings.store / "uploads",
                {settings.upload_lifetime_s, settings.blob_bytes, settings.budget_bytes, settings.open_uploads}) {
-    const std::vector<std::string> lost = store_.recover();
-    if (!lost.empty()) spdlog::warn("{} blobs were lost; what needs them is baked again", lost.size());
+    if (const std::size_t lost = store_.recover()) spdlog::warn("{} blobs were lost", lost);
     uploads_.recover();
-    queue_.recover(lost);
+    if (const std::size_t lost = queue_.recover()) spdlog::warn("{} stages lost files; they are baked again", lost);
     prune(database_, now() - settings_.keep_failed_s);
     slots_ = std::make_unique<Slots>(queue_, runner_, database_, store_, settings_.budget_bytes, settings_.workers,
                                      settings_.worker_threads);
@@ -81,25 +80,23 @@ std::unique_ptr<IncomingFile> Service::receive(std::uint64_t expected_bytes, con
     if (expected_bytes > settings_.blob_bytes)
         throw Refusal(Refused::too_large, "the body is " + std::to_string(expected_bytes) +
                                               " bytes long; allowed is up to " + std::to_string(settings_.blob_bytes));
-    const std::uint64_t room = settings_.budget_bytes - std::min(settings_.budget_bytes, expected_bytes);
     const bool known = is_digest(digest) && store_.size_of(digest);  // then nothing more will lie here
-    if (!known && !evict(database_, store_, room))
-        throw Refusal(Refused::full, "the store's budget of " + std::to_string(settings_.budget_bytes) +
-                                         " bytes is used up by what live bakes and names need");
+    if (!known) make_room(database_, store_, settings_.budget_bytes, expected_bytes);
     return std::make_unique<IncomingFile>(store_.incoming_folder(), settings_.blob_bytes);
 }
 
+/// There is room for what was announced, and a body in chunks announces nothing; others came meanwhile, too.
 bool Service::store_blob(IncomingFile& file, const std::string& expected_digest) {
-    const bool fresh = store_.put(file, expected_digest);
-    if (fresh) evict(database_, store_, settings_.budget_bytes, file.digest());
-    return fresh;
+    store_.check(file, expected_digest);
+    const auto held = database_.lock();
+    if (!store_.size_of(file.digest())) make_room(database_, store_, settings_.budget_bytes, file.bytes());
+    return store_.adopt(file.path(), file.digest());
 }
 
 OpenBlob Service::open_blob(const std::string& digest) try {
-    return store_.open(digest);
+    return store_.open(digest, [&](Sql& sql) { queue_.blob_lost(sql, digest); });
 } catch (const LostBlob& lost) {
     spdlog::error("{}", lost.what());
-    queue_.blob_lost(lost.digest());
     throw Refusal(Refused::busy, std::string(lost.what()) + "; a result is baked again, an input must be sent again");
 }
 

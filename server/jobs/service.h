@@ -36,7 +36,8 @@ public:
     /// A file to receive a body into, of that digest where it is known. Makes room for it; throws Refusal(full) when
     /// `expected_bytes` cannot be taken.
     std::unique_ptr<IncomingFile> receive(std::uint64_t expected_bytes, const std::string& digest = {});
-    /// Makes the received file a blob; returns whether it is new.
+    /// Makes the received file a blob; returns whether it is new. Throws Refusal(unprocessable) when `expected_digest`
+    /// is not empty and another one, and Refusal(full) when there is no room for it.
     bool store_blob(IncomingFile& file, const std::string& expected_digest);
     /// Opens a blob, verified. A spoiled one starts its stages again and is Refusal(busy) for a result, not_found else.
     OpenBlob open_blob(const std::string& digest);

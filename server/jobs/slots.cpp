@@ -148,8 +148,7 @@ void Slots::run(const ClaimedStage& stage) {
 void Slots::remove_spoiled_inputs(const std::vector<std::string>& digests) {
     for (const std::string& digest : digests)
         if (digest_of_file(store_.path_of(digest)) != digest) {
-            store_.remove({digest});
-            queue_.blob_lost(digest);  // with the facts that were read from it
+            store_.lose(digest, [&](Sql& sql) { queue_.blob_lost(sql, digest); });  // with the facts read from it
             throw Error(ErrorKind::bad_input,
                         "the stored bytes of sha256:" + digest + " were spoiled; send them again");
         }

@@ -1,11 +1,13 @@
 #include "server/jobs/uploads.h"
 
 #include <fcntl.h>
+#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <cerrno>
 
 #include "core/base/digest.h"
+#include "server/store/eviction.h"
 #include "server/store/file_system.h"
 #include "server/store/refusal.h"
 
@@ -59,7 +61,8 @@ void Uploads::recover() {
     complete_whole_ones();
 }
 
-/// What was received to its last byte, and a crash kept from becoming a blob: its sender may not ask again.
+/// What was received to its last byte, and a crash kept from becoming a blob: its sender may not ask again. What cannot
+/// become one now (the disk is full) stays as it is, and an empty PATCH tries again; the service starts without it.
 void Uploads::complete_whole_ones() {
     std::vector<std::string> whole;
     database_.read([&](Sql& sql) {
@@ -68,8 +71,8 @@ void Uploads::complete_whole_ones() {
     });
     for (const std::string& id : whole) try {
             complete(id);
-        } catch (const Refusal&) {
-            // its bytes are not those that were announced: it is gone
+        } catch (const std::exception& error) {  // or its bytes are not those that were announced: then it is gone
+            spdlog::warn("the whole upload {} did not become a blob: {}", id, error.what());
         }
 }
 
@@ -81,8 +84,8 @@ void Uploads::expire() {
     });
     for (const std::string& id : old) try {
             remove(id);
-        } catch (const Refusal&) {
-            // it grows just now
+        } catch (const std::exception& error) {  // it grows just now, or the disk is full
+            spdlog::warn("the expired upload {} stays: {}", id, error.what());
         }
 }
 
@@ -164,9 +167,13 @@ Uploads::Appended Uploads::append(const std::string& id, std::uint64_t offset,
     });
     sync_file(file.get(), path);
     if (size == state.bytes) return complete(id);
+    return {size, prolong(id), {}};
+}
+
+double Uploads::prolong(const std::string& id) {
     const double expires = now() + limits_.lifetime_s;
     database_.write([&](Sql& sql) { sql.run("UPDATE uploads SET expires = ? WHERE id = ?", {expires, id}); });
-    return {size, expires, {}};
+    return expires;
 }
 
 Uploads::Appended Uploads::complete(const std::string& id) {
@@ -176,18 +183,32 @@ Uploads::Appended Uploads::complete(const std::string& id) {
     const std::uint64_t size = size_on_disk(id);
     const std::string found = digest_of_file(folder_ / id);
     const bool whole = found == expected;
-    if (whole) {  // by a second name: a crash before the row is written leaves the upload as it was
-        const fs::path second = store_.incoming_folder() / random_name();
-        if (::link((folder_ / id).c_str(), second.c_str()) != 0) throw_store_error(second, errno);
-        store_.adopt(second, expected);
-        ::unlink(second.c_str());  // there is none when the store took it
-    }
+    if (whole) make_blob(id, expected, size);
     database_.write([&](Sql& sql) { sql.run("DELETE FROM uploads WHERE id = ?", {id}); });
     ::unlink((folder_ / id).c_str());
     if (!whole)
         throw Refusal(Refused::unprocessable,
                       "the digest of the uploaded bytes is " + found + "; allowed is " + expected, "sha256");
     return {size, 0, expected};
+}
+
+/// There was room when the upload began, and others came since. Its bytes were answered, so a store that has no room
+/// left does not drop them: the upload waits, whole, as long as one that does not grow, and an empty PATCH tries again.
+void Uploads::make_blob(const std::string& id, const std::string& digest, std::uint64_t bytes) {
+    const auto held = database_.lock();
+    if (!store_.size_of(digest)) try {
+            make_room(database_, store_, limits_.budget, bytes);
+        } catch (const Refusal&) {
+            prolong(id);
+            throw;
+        }
+    // By a second name: a crash before the row is written leaves the upload as it was.
+    struct Link {
+        fs::path path;
+        ~Link() { ::unlink(path.c_str()); }  // there is none when the store took it
+    } const second{store_.incoming_folder() / random_name()};
+    if (::link((folder_ / id).c_str(), second.path.c_str()) != 0) throw_store_error(second.path, errno);
+    store_.adopt(second.path, digest);
 }
 
 void Uploads::remove(const std::string& id) {

@@ -29,7 +29,7 @@ public:
     struct Limits {
         double lifetime_s = 0;         ///< of an upload that does not grow
         std::uint64_t most_bytes = 0;  ///< of one upload
-        std::uint64_t budget = 0;      ///< of all unfinished uploads together, as announced
+        std::uint64_t budget = 0;      ///< of the store, and of all unfinished uploads together, as announced
         int most_open = 0;             ///< unfinished uploads of one token
     };
     Uploads(Database& database, BlobStore& store, std::filesystem::path folder, const Limits& limits);
@@ -48,7 +48,8 @@ public:
     UploadState get(const std::string& id);
     /// Appends what `read` gives to its receiver, makes it durable, and makes the whole a blob when it is complete
     /// (then the upload is gone and is_blob() is its digest). Throws Refusal(conflict) when `offset` is not the
-    /// upload's, or another request is at it; what came before an interruption stays.
+    /// upload's, or another request is at it, and Refusal(full) when there is no room for the whole; what came before
+    /// an interruption stays.
     struct Appended {
         std::uint64_t offset = 0;
         double expires = 0;
@@ -60,7 +61,9 @@ public:
 private:
     struct Busy;
     std::uint64_t size_on_disk(const std::string& id) const;
+    double prolong(const std::string& id);
     Appended complete(const std::string& id);
+    void make_blob(const std::string& id, const std::string& digest, std::uint64_t bytes);
     void complete_whole_ones();
 
     Database& database_;

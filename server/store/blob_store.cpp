@@ -35,11 +35,14 @@ BlobStore::BlobStore(const fs::path& folder, Database& database) : folder_(folde
         for (const char low : std::string(digits)) make_folder(folder_ / "blobs" / std::string{high, low});
     sync_folder(folder_ / "blobs");
     sync_folder(folder_);
+    database_.read([&](Sql& sql) {
+        total_bytes_ = static_cast<std::uint64_t>(sql.rows("SELECT sum(bytes) FROM blobs").at(0).integer(0));
+    });
 }
 
 fs::path BlobStore::path_of(const std::string& digest) const { return folder_ / "blobs" / blob_name(digest); }
 
-std::vector<std::string> BlobStore::recover() {
+std::size_t BlobStore::recover() {
     std::error_code ignored;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "tmp")) fs::remove_all(entry, ignored);
 
@@ -58,7 +61,7 @@ std::vector<std::string> BlobStore::recover() {
     std::vector<std::string> lost;
     for (const auto& [digest, bytes] : rows) lost.push_back(digest);
     if (!lost.empty()) forget(lost);
-    return lost;
+    return lost.size();
 }
 
 std::optional<std::uint64_t> BlobStore::size_of(const std::string& digest) {
@@ -70,20 +73,13 @@ std::optional<std::uint64_t> BlobStore::size_of(const std::string& digest) {
     return bytes;
 }
 
-std::uint64_t BlobStore::total_bytes() {
-    std::int64_t bytes = 0;
-    database_.read([&](Sql& sql) { bytes = sql.rows("SELECT sum(bytes) FROM blobs").at(0).integer(0); });
-    return static_cast<std::uint64_t>(bytes);
-}
-
-bool BlobStore::put(IncomingFile& file, const std::string& expected) {
+void BlobStore::check(IncomingFile& file, const std::string& expected) {
     file.finish();
     if (!expected.empty() && file.digest() != expected)
         throw Refusal(Refused::unprocessable,
                       "the digest of the " + std::to_string(file.bytes()) + " bytes received is " + file.digest() +
                           "; allowed is " + expected,
                       "sha256");
-    return adopt(file.path(), file.digest());
 }
 
 bool BlobStore::adopt(const fs::path& file, const std::string& digest) {
@@ -97,6 +93,7 @@ bool BlobStore::adopt(const fs::path& file, const std::string& digest) {
         database_.write([&](Sql& sql) {
             sql.run("INSERT OR IGNORE INTO blobs VALUES(?, ?, ?, ?)", {digest, bytes, now(), now()});
         });
+        if (!known) total_bytes_ += static_cast<std::uint64_t>(bytes);
         const std::lock_guard lock(mutex_);
         verified_.insert(digest);
     }
@@ -104,15 +101,15 @@ bool BlobStore::adopt(const fs::path& file, const std::string& digest) {
     return !known;
 }
 
-OpenBlob BlobStore::open(const std::string& digest) {
+OpenBlob BlobStore::open(const std::string& digest, const OnLoss& on_loss) {
     if (!is_digest(digest) || !size_of(digest))
         throw Refusal(Refused::not_found, "there is no blob " + digest.substr(0, 64), "sha256");
     OpenBlob blob{Descriptor(::open(path_of(digest).c_str(), O_RDONLY | O_CLOEXEC)), 0};
-    if (!blob.file && errno == ENOENT) lose_if_missing(digest);
+    if (!blob.file && errno == ENOENT) lose_if_missing(digest, on_loss);
     struct stat facts {};
     if (!blob.file || ::fstat(blob.file.get(), &facts) != 0 || !S_ISREG(facts.st_mode)) refuse_for_now(digest);
     blob.bytes = static_cast<std::uint64_t>(facts.st_size);
-    verify(digest, blob.file.get());
+    verify(digest, blob.file.get(), on_loss);
     touch(digest);
     return blob;
 }
@@ -122,10 +119,10 @@ void BlobStore::refuse_for_now(const std::string& digest) {
     throw Refusal(Refused::busy, "the stored bytes of sha256:" + digest + " cannot be read now");
 }
 
-void BlobStore::lose_if_missing(const std::string& digest) {
+void BlobStore::lose_if_missing(const std::string& digest, const OnLoss& on_loss) {
     const auto held = database_.lock();  // it may have been removed and sent again meanwhile
     if (fs::exists(path_of(digest)) || !size_of(digest)) refuse_for_now(digest);
-    forget({digest});
+    lose(digest, on_loss);
     throw LostBlob(digest);
 }
 
@@ -134,7 +131,7 @@ bool BlobStore::is_verified(const std::string& digest) {
     return verified_.count(digest) > 0;
 }
 
-void BlobStore::verify(const std::string& digest, int descriptor) {
+void BlobStore::verify(const std::string& digest, int descriptor, const OnLoss& on_loss) {
     if (is_verified(digest)) return;
     Digest found;
     std::vector<std::byte> piece(1 << 18);
@@ -145,11 +142,17 @@ void BlobStore::verify(const std::string& digest, int descriptor) {
     if (found.hex() != digest) {
         const auto held = database_.lock();
         if (is_verified(digest)) refuse_for_now(digest);  // replaced by good bytes meanwhile
-        remove({digest});
+        lose(digest, on_loss);
         throw LostBlob(digest);
     }
     const std::lock_guard lock(mutex_);
     verified_.insert(digest);
+}
+
+void BlobStore::lose(const std::string& digest, const OnLoss& on_loss) {
+    const auto held = database_.lock();
+    forget({digest}, on_loss);
+    ::unlink(path_of(digest).c_str());
 }
 
 void BlobStore::remove(const std::vector<std::string>& digests) {
@@ -158,10 +161,16 @@ void BlobStore::remove(const std::vector<std::string>& digests) {
     for (const std::string& digest : digests) ::unlink(path_of(digest).c_str());
 }
 
-void BlobStore::forget(const std::vector<std::string>& digests) {
+void BlobStore::forget(const std::vector<std::string>& digests, const OnLoss& on_loss) {
+    const auto held = database_.lock();
+    std::int64_t bytes = 0;
     database_.write([&](Sql& sql) {
-        for (const std::string& digest : digests) sql.run("DELETE FROM blobs WHERE sha256 = ?", {digest});
+        for (const std::string& digest : digests)
+            for (const SqlRow& row : sql.rows("DELETE FROM blobs WHERE sha256 = ? RETURNING bytes", {digest}))
+                bytes += row.integer(0);
+        if (on_loss) on_loss(sql);
     });
+    total_bytes_ -= static_cast<std::uint64_t>(bytes);
     const std::lock_guard lock(mutex_);
     for (const std::string& digest : digests) {
         verified_.erase(digest);
@@ -171,18 +180,18 @@ void BlobStore::forget(const std::vector<std::string>& digests) {
 
 void BlobStore::touch(const std::string& digest) {
     const std::lock_guard lock(mutex_);
-    used_.insert(digest);
+    used_[digest] = now();
 }
 
 void BlobStore::flush_uses() {
-    std::unordered_set<std::string> used;
+    std::unordered_map<std::string, double> used;
     {
         const std::lock_guard lock(mutex_);
         used.swap(used_);
     }
     if (used.empty()) return;
     database_.write([&](Sql& sql) {
-        for (const std::string& digest : used) sql.run("UPDATE blobs SET used = ? WHERE sha256 = ?", {now(), digest});
+        for (const auto& [digest, time] : used) sql.run("UPDATE blobs SET used = ? WHERE sha256 = ?", {time, digest});
     });
 }
 

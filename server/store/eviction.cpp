@@ -1,7 +1,9 @@
 #include "server/store/eviction.h"
 
-#include <optional>
+#include <algorithm>
 #include <vector>
+
+#include "server/store/refusal.h"
 
 namespace hairbake {
 namespace {
@@ -10,7 +12,8 @@ constexpr const char* live_bake_of_stage =
     "EXISTS(SELECT 1 FROM bakes b WHERE b.transmittance = s.key AND b.state IN ('queued', 'running')) OR "
     "EXISTS(SELECT 1 FROM bakes b WHERE b.irradiance = s.key AND b.state IN ('queued', 'running'))";
 
-constexpr int stages_at_once = 100;
+/// As many as one ranking of all that is stored gives to forget: the writer's lock is held meanwhile.
+constexpr int ranked_at_once = 1000;
 
 /// The stored stages that were used longest ago and that no live bake needs, oldest first.
 std::vector<std::string> oldest_stages(Sql& sql) {
@@ -19,7 +22,7 @@ std::vector<std::string> oldest_stages(Sql& sql) {
          sql.rows(std::string("SELECT s.key FROM stages s WHERE s.state = 'done' AND NOT (") + live_bake_of_stage +
                       ") ORDER BY (SELECT max(bl.used) FROM stage_files f JOIN blobs bl USING(sha256) "
                       "WHERE f.stage = s.key), s.seq LIMIT ?",
-                  {std::int64_t(stages_at_once)}))
+                  {std::int64_t(ranked_at_once)}))
         keys.push_back(row.text(0));
     return keys;
 }
@@ -47,20 +50,21 @@ std::vector<std::string> forget_stage(Sql& sql, const std::string& key) {
     return blobs;
 }
 
-/// The input that was used longest ago and that nothing live refers to; empty when there is none.
-std::string oldest_input(Sql& sql, const std::string& spared) {
-    const auto rows = sql.rows(
-        std::string(
-            "SELECT sha256 FROM blobs bl WHERE sha256 <> ? AND "
-            "NOT EXISTS(SELECT 1 FROM stage_files f WHERE f.sha256 = bl.sha256) AND "
-            "NOT EXISTS(SELECT 1 FROM inputs i WHERE i.thumbnail = bl.sha256) AND "
-            "NOT EXISTS(SELECT 1 FROM names n WHERE n.sha256 = bl.sha256 AND n.version = (SELECT max(version) "
-            "FROM names m WHERE m.kind = n.kind AND m.path = n.path)) AND "
-            "NOT EXISTS(SELECT 1 FROM stage_inputs t JOIN stages s ON s.key = t.stage WHERE t.sha256 = bl.sha256 "
-            "AND (") +
-            live_bake_of_stage + ")) ORDER BY used LIMIT 1",
-        {spared});
-    return rows.empty() ? std::string() : rows[0].text(0);
+/// The inputs that were used longest ago and that nothing live refers to, oldest first.
+std::vector<std::string> oldest_inputs(Sql& sql) {
+    std::vector<std::string> digests;
+    for (const SqlRow& row :
+         sql.rows(std::string("SELECT sha256 FROM blobs bl WHERE "
+                              "NOT EXISTS(SELECT 1 FROM stage_files f WHERE f.sha256 = bl.sha256) AND "
+                              "NOT EXISTS(SELECT 1 FROM inputs i WHERE i.thumbnail = bl.sha256) AND "
+                              "NOT EXISTS(SELECT 1 FROM names n WHERE n.sha256 = bl.sha256 AND n.version = (SELECT "
+                              "max(version) FROM names m WHERE m.kind = n.kind AND m.path = n.path)) AND "
+                              "NOT EXISTS(SELECT 1 FROM stage_inputs t JOIN stages s ON s.key = t.stage WHERE "
+                              "t.sha256 = bl.sha256 AND (") +
+                      live_bake_of_stage + ")) ORDER BY used LIMIT ?",
+                  {std::int64_t(ranked_at_once)}))
+        digests.push_back(row.text(0));
+    return digests;
 }
 
 std::vector<std::string> forget_input(Sql& sql, const std::string& digest) {
@@ -74,39 +78,59 @@ std::vector<std::string> forget_input(Sql& sql, const std::string& digest) {
     return blobs;
 }
 
-/// Forgets what is oldest until `excess` bytes are free or a transaction has done enough. Returns the blobs to remove;
-/// nothing when there is nothing to forget.
-std::optional<std::vector<std::string>> forget_oldest(Sql& sql, BlobStore& store, std::uint64_t excess,
-                                                      const std::string& spared) {
+/// What one transaction forgets: blobs to remove, and how many bytes these are.
+struct Forgotten {
     std::vector<std::string> blobs;
-    std::uint64_t freed = 0;
-    const auto take = [&](const std::vector<std::string>& forgotten) {
-        for (const std::string& digest : forgotten) freed += store.size_of(digest).value_or(0);
-        blobs.insert(blobs.end(), forgotten.begin(), forgotten.end());
-    };
-    const std::vector<std::string> stages = oldest_stages(sql);
-    for (std::size_t i = 0; i < stages.size() && freed < excess; ++i) take(forget_stage(sql, stages[i]));
-    if (!stages.empty()) return blobs;
-    const std::string input = oldest_input(sql, spared);
-    if (input.empty()) return std::nullopt;
-    take(forget_input(sql, input));
-    return blobs;
+    std::uint64_t bytes = 0;
+};
+
+/// Forgets the oldest of `ranked` by `forget` until `wanted` bytes are free or all are gone.
+Forgotten forget_oldest(Sql& sql, BlobStore& store, const std::vector<std::string>& ranked, std::uint64_t wanted,
+                        std::vector<std::string> (*forget)(Sql&, const std::string&)) {
+    Forgotten forgotten;
+    for (std::size_t i = 0; i < ranked.size() && forgotten.bytes < wanted; ++i)
+        for (std::string& digest : forget(sql, ranked[i])) {
+            forgotten.bytes += store.size_of(digest).value_or(0);
+            forgotten.blobs.push_back(std::move(digest));
+        }
+    return forgotten;
+}
+
+/// One transaction of it. Returns whether there was something to forget.
+bool evict_some(Database& database, BlobStore& store, std::vector<std::string> (*rank)(Sql&),
+                std::vector<std::string> (*forget)(Sql&, const std::string&), std::uint64_t wanted) {
+    bool some = false;
+    Forgotten forgotten;
+    database.write([&](Sql& sql) {
+        const std::vector<std::string> ranked = rank(sql);
+        some = !ranked.empty();
+        forgotten = forget_oldest(sql, store, ranked, wanted, forget);
+    });
+    if (!forgotten.blobs.empty()) store.remove(forgotten.blobs);
+    return some;
 }
 
 }  // namespace
 
-bool evict(Database& database, BlobStore& store, std::uint64_t budget, const std::string& spared) {
-    const auto held = database.lock();  // rows and files go together
+bool evict(Database& database, BlobStore& store, std::uint64_t budget, std::uint64_t incoming) {
+    if (incoming > budget) return false;  // whatever went for it would be gone in vain
+    const auto held = database.lock();    // rows and files go together
+    const std::uint64_t allowed = budget - incoming, spare = budget / 100 * 3;
+    const std::uint64_t wanted = allowed - std::min(allowed, spare);
     std::uint64_t total = store.total_bytes();
-    if (total <= budget) return true;
+    if (total <= allowed) return true;
     store.flush_uses();
-    for (; total > budget; total = store.total_bytes()) {
-        std::optional<std::vector<std::string>> blobs;
-        database.write([&](Sql& sql) { blobs = forget_oldest(sql, store, total - budget, spared); });
-        if (!blobs) return false;
-        store.remove(*blobs);
-    }
+    for (; total > allowed; total = store.total_bytes())
+        if (!evict_some(database, store, oldest_stages, forget_stage, total - wanted)) break;
+    for (; total > allowed; total = store.total_bytes())
+        if (!evict_some(database, store, oldest_inputs, forget_input, total - allowed)) return false;
     return true;
+}
+
+void make_room(Database& database, BlobStore& store, std::uint64_t budget, std::uint64_t incoming) {
+    if (!evict(database, store, budget, incoming))
+        throw Refusal(Refused::full, "the store's budget of " + std::to_string(budget) +
+                                         " bytes is used up by what live bakes and names need");
 }
 
 }  // namespace hairbake

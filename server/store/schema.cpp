@@ -14,6 +14,20 @@ CREATE INDEX bake_names_by_path ON bake_names(path);
 INSERT INTO bake_names SELECT b.id, n.key, json_extract(n.value, '$.path'), json_extract(n.value, '$.version')
     FROM bakes b, json_each(b.names) n;
 )sql";
+    if (from == 3)  // a page of a name's or a batch's bakes is read by their age, and no other bakes with it
+        return R"sql(
+DELETE FROM bake_names WHERE bake NOT IN (SELECT id FROM bakes);
+ALTER TABLE bake_names ADD COLUMN seq INTEGER NOT NULL DEFAULT 0;
+UPDATE bake_names SET seq = (SELECT b.seq FROM bakes b WHERE b.id = bake);
+DROP INDEX bake_names_by_path;
+CREATE INDEX bake_names_by_path ON bake_names(path, seq);
+DELETE FROM batch_bakes WHERE bake NOT IN (SELECT id FROM bakes);
+ALTER TABLE batch_bakes ADD COLUMN seq INTEGER NOT NULL DEFAULT 0;
+UPDATE batch_bakes SET seq = (SELECT b.seq FROM bakes b WHERE b.id = bake);
+CREATE INDEX batch_bakes_by_age ON batch_bakes(batch, seq);
+CREATE INDEX inputs_by_blob ON inputs(sha256);
+CREATE INDEX inputs_by_thumbnail ON inputs(thumbnail);
+)sql";
     return R"sql(
 CREATE TABLE blobs(sha256 TEXT PRIMARY KEY, bytes INTEGER NOT NULL, created REAL NOT NULL, used REAL NOT NULL)
     WITHOUT ROWID;

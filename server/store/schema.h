@@ -3,7 +3,7 @@
 
 namespace hairbake {
 
-inline constexpr int schema_version = 3;
+inline constexpr int schema_version = 4;
 
 /// Statements that bring a database of the version `from` to `from` + 1; version 0 is an empty one.
 const char* schema_statements(int from);

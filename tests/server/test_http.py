@@ -83,6 +83,7 @@ class Rim(unittest.TestCase):
             for method, operation in operations.items():
                 scope = re.search(r"Scope: ([a-z]+)\.", operation["description"]).group(1)
                 self.assertEqual(bool(operation["security"]), scope != "open", (method, pattern))
+                self.assertIn("503", operation["responses"], (method, pattern))  # all threads may be busy
                 for status, answer in operation["responses"].items():
                     if status >= "400":
                         self.assertIn("application/problem+json", answer["content"], (method, pattern, status))

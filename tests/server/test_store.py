@@ -193,6 +193,51 @@ class Restarts(unittest.TestCase):
                 self.assertEqual(d.wait(bake)["state"], "done")
                 self.assertEqual(sha256(d.ask("GET", file["href"]).body), file["sha256"])
 
+    def test_a_whole_upload_that_cannot_become_a_blob_at_the_start_waits_for_its_sender(self):
+        with Daemon() as d:
+            Blobs.become_bound_to_modes(d)
+            data = hair_bytes()
+            upload = d.create_upload(data).headers["Location"]
+            self.assertEqual(d.append(upload, 0, data[:-1]).status, 204)
+            d.stop()
+            file = d.path / "store/uploads" / upload.rsplit("/", 1)[1]
+            with open(file, "ab") as grown:
+                grown.write(data[-1:])  # as a kill leaves it between the last byte and the commit
+            file.chmod(0)
+            d.start()
+            self.assertEqual(d.ask("HEAD", f"/v1/blobs/{sha256(data)}").status, 404)
+            self.assertEqual(d.ask("HEAD", upload, headers=TUS).headers["Upload-Offset"], str(len(data)))
+            file.chmod(0o640)
+            reply = d.append(upload, len(data), b"")
+            self.assertEqual((reply.status, reply.headers["Hairbake-Blob"]), (204, f"/v1/blobs/{sha256(data)}"))
+            self.assertEqual(d.ask("GET", f"/v1/blobs/{sha256(data)}").body, data)
+
+    def test_a_blob_that_was_forgotten_and_not_baked_again_is_found_at_the_next_start(self):
+        """As a kill leaves the database between the two."""
+        with Daemon() as d:
+            hair, gone = d.put(hair_bytes()), d.put(hair_bytes(seed=1))
+            self.assertEqual(d.ask("POST", "/v1/models", {"sha256": gone}).status, 201)
+            requests = [quick_request(model) for model in (hair, gone)]
+            bakes = [d.ask("POST", "/v1/bakes", request).json["id"] for request in requests]
+            files = [next(f for f in d.wait(bake)["files"] if f["name"] == "transmittance.npy") for bake in bakes]
+            d.stop()
+            for digest in (gone, *(file["sha256"] for file in files)):
+                self.alter(d, f"DELETE FROM blobs WHERE sha256 = '{digest}'")
+                d.blob_file(digest).unlink()
+            d.start()
+            view = d.wait(bakes[0])
+            self.assertEqual((view["state"], view["stages"][0]["attempts"]), ("done", 1))  # of the new run
+            self.assertEqual(sha256(d.ask("GET", files[0]["href"]).body), files[0]["sha256"])
+            # Of the other the model is gone, too: that is said, and its facts are no longer told.
+            view = d.wait(bakes[1])
+            self.assertEqual((view["state"], view["error"]["kind"]), ("failed", "bad_input"), view)
+            self.assertIn("send the input again", view["error"]["message"])
+            with contextlib.closing(sqlite3.connect(d.path / "store/hairbake.db")) as database:
+                self.assertEqual(database.execute("SELECT count(*) FROM inputs").fetchone(), (0,))
+            self.assertEqual(d.put(hair_bytes(seed=1)), gone)
+            self.assertEqual(d.ask("POST", "/v1/bakes", requests[1]).status, 202)
+            self.assertEqual(d.wait(bakes[1])["state"], "done")
+
     def test_a_spoiled_input_fails_the_bake_instead_of_giving_a_wrong_result(self):
         with Daemon() as d:
             data = hair_bytes()
@@ -207,13 +252,27 @@ class Restarts(unittest.TestCase):
 
     def test_a_store_of_the_version_before_is_taken_over_and_one_of_a_later_version_is_not(self):
         with Daemon() as d:
-            bake = d.ask("POST", "/v1/bakes", quick_request(d.put(hair_bytes()))).json["id"]
+            hair, sky = d.put(hair_bytes()), d.put(hdr_bytes())
+            d.ask("PUT", "/v1/names/environment/sky", {"sha256": sky})
+            old = d.ask("POST", "/v1/bakes", {**quick_request(hair), "environment": "name:sky"}).json["id"]
+            self.assertEqual(d.wait(old)["state"], "done")
+            batch = d.ask("POST", "/v1/rebakes", {"name": "sky", "environment": f"sha256:{d.put(hdr_bytes(red=99))}"}).json["id"]
+            bake = d.ask("GET", f"/v1/bakes?batch={batch}").json["bakes"][0]["id"]
             self.assertEqual(d.wait(bake)["state"], "done")
-            d.stop()
-            # Version 1 did not know who began an upload, version 2 only the last name that a bake was asked by.
-            self.alter(d, "ALTER TABLE uploads DROP COLUMN token; DROP TABLE bake_names; PRAGMA user_version = 1")
-            d.start()
-            self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}").json["state"], "done")
+            # Version 1 did not know who began an upload, version 2 only the last name that a bake was asked by, version 3
+            # not how old the bakes of a name and of a batch are.
+            before_4 = """DROP INDEX batch_bakes_by_age; ALTER TABLE batch_bakes DROP COLUMN seq; DROP INDEX bake_names_by_path;
+                ALTER TABLE bake_names DROP COLUMN seq; CREATE INDEX bake_names_by_path ON bake_names(path);
+                DROP INDEX inputs_by_blob; DROP INDEX inputs_by_thumbnail; """
+            before_2 = "ALTER TABLE uploads DROP COLUMN token; DROP TABLE bake_names; "
+            for version, statements in ((3, before_4), (1, before_4 + before_2)):
+                d.stop()
+                self.alter(d, f"{statements} PRAGMA user_version = {version}")
+                d.start()
+                self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}").json["state"], "done")
+                for question, found in ((f"batch={batch}", bake), ("name=sky", old)):
+                    self.assertEqual([b["id"] for b in d.ask("GET", f"/v1/bakes?{question}").json["bakes"]], [found])
+                self.assertEqual(d.ask("GET", f"/v1/batches/{batch}").json["states"]["done"], 1)
             reply = d.ask("POST", "/v1/uploads", headers={
                 "Tus-Resumable": "1.0.0", "Upload-Length": "9",
                 "Upload-Metadata": "sha256 " + base64.b64encode(sha256(b"some hair").encode()).decode()})
@@ -399,6 +458,67 @@ class Budget(unittest.TestCase):
             self.assertEqual(d.ask("PUT", f"/v1/blobs/{sha256(other)}", other).status, 507)
             for data in kept:
                 self.assertEqual(d.ask("GET", f"/v1/blobs/{sha256(data)}").body, data)
+
+    def test_a_body_in_chunks_that_does_not_fit_is_refused_when_it_is_whole(self):
+        with Daemon(config="budget_mb = 1\nblob_mb = 1") as d:
+            # Of 1,048,576 bytes 600,000 stay, as a name points at them.
+            kept, big, small = os.urandom(600_000), os.urandom(448_577), os.urandom(448_576)
+            d.ask("PUT", "/v1/names/mesh/kept", {"sha256": d.put(kept)})
+            file = {"Content-Type": "application/octet-stream"}
+            for reply in (d.ask("PUT", f"/v1/blobs/{sha256(big)}", iter([big])), d.ask("POST", "/v1/models", iter([big]), file)):
+                self.assertEqual((reply.status, reply.json["type"]), (507, "urn:hairbake:problem:full"), reply.body)
+                self.assertEqual(d.ask("HEAD", f"/v1/blobs/{sha256(big)}").status, 404)
+                self.assertEqual(d.leftovers(), [])
+            self.assertEqual(d.ask("PUT", f"/v1/blobs/{sha256(small)}", iter([small])).status, 201)
+            self.assertEqual(d.ask("PUT", f"/v1/blobs/{sha256(kept)}", iter([kept])).status, 200)  # known: needs no room
+            self.assertEqual(d.ask("GET", f"/v1/blobs/{sha256(small)}").body, small)
+
+    def test_an_upload_that_finds_no_room_at_its_end_waits_for_it(self):
+        with Daemon(config="budget_mb = 1\nblob_mb = 1") as d:
+            data = os.urandom(500_000)
+            upload = d.create_upload(data).headers["Location"]
+            self.assertEqual(d.append(upload, 0, data[:1000]).status, 204)
+            kept = d.put(os.urandom(600_000))  # together more than 1,048,576
+            d.ask("PUT", "/v1/names/mesh/kept", {"sha256": kept})
+            reply = d.append(upload, 1000, data[1000:])
+            self.assertEqual((reply.status, reply.json["type"]), (507, "urn:hairbake:problem:full"), reply.body)
+            for _ in range(2):  # before and after a start
+                self.assertEqual(d.ask("HEAD", upload, headers=TUS).headers["Upload-Offset"], str(len(data)))
+                self.assertEqual(d.append(upload, len(data), b"").status, 507)
+                self.assertEqual(d.ask("HEAD", f"/v1/blobs/{sha256(data)}").status, 404)
+                self.assertEqual(d.ask("HEAD", f"/v1/blobs/{kept}").status, 200)
+                self.assertEqual(d.leftovers(), [])
+                d.stop()
+                d.start()
+            d.ask("PUT", "/v1/names/mesh/kept", {"sha256": d.put(b"less")})
+            reply = d.append(upload, len(data), b"")
+            self.assertEqual((reply.status, reply.headers["Hairbake-Blob"]), (204, f"/v1/blobs/{sha256(data)}"))
+            self.assertEqual(d.ask("GET", f"/v1/blobs/{sha256(data)}").body, data)
+            self.assertEqual(d.ask("HEAD", upload, headers=TUS).status, 404)
+
+    def test_results_go_until_three_hundredths_are_free_and_inputs_no_more_than_must(self):
+        with Daemon(config="budget_mb = 1\nblob_mb = 1") as d:
+            budget, models, bakes = 1 << 20, [], []
+            for seed in range(12):
+                models.append(d.put(hair_bytes(strands=4, points=4, seed=seed)))
+                bakes.append(d.ask("POST", "/v1/bakes", quick_request(models[-1])).json["id"])
+                self.assertEqual(d.wait(bakes[-1])["state"], "done")
+            results = [sum(file["bytes"] for file in d.ask("GET", f"/v1/bakes/{bake}").json["files"][1:]) for bake in bakes]
+            self.assertGreater(sum(results[1:]), budget // 100 * 3)  # or there would not be enough to go
+            d.put(os.urandom(budget - self.stored(d)))  # it fits to the byte: all stay
+            self.assertEqual({d.ask("GET", f"/v1/bakes/{bake}").status for bake in bakes}, {200})
+            d.put(b"x")
+            gone = [size for bake, size in zip(bakes, results) if d.ask("GET", f"/v1/bakes/{bake}").status == 404]
+            free = budget - self.stored(d)
+            self.assertGreaterEqual(free, budget // 100 * 3)
+            self.assertLess(free - max(gone), budget // 100 * 3)  # the last that went had to go
+            self.assertLess(len(gone), len(bakes))
+            for model in models:
+                self.assertEqual(d.ask("HEAD", f"/v1/blobs/{model}").status, 200)
+
+    @staticmethod
+    def stored(d):
+        return sum(file.stat().st_size for file in (d.path / "store/blobs").rglob("*") if file.is_file())
 
     def test_the_oldest_results_go_first_and_what_is_needed_stays(self):
         with Daemon(config="budget_mb = 1\nblob_mb = 1") as d:

@@ -37,6 +37,15 @@ protected:
     std::string bake_state(const std::string& id) { return state("bakes", "id", id); }
     std::string stage_state(const std::string& key) { return state("stages", "key", key); }
 
+    /// The digest of a stored blob of that text.
+    std::string blob_of(const std::string& text) {
+        IncomingFile file(store.incoming_folder(), text.size());
+        file.add(std::as_bytes(std::span(text)));
+        file.finish();
+        store.adopt(file.path(), file.digest());
+        return file.digest();
+    }
+
     test_support::TemporaryFolder folder;
     Database database{folder / "test.db"};
     BlobStore store{folder / "store", database};
@@ -126,7 +135,7 @@ TEST_F(QueueTest, WhatRanAtAKillIsQueuedAtTheNextStart) {
     queue.done(*queue.claim(), {}, "{}");
     queue.claim();
     Queue next(database, store, 1);
-    next.recover({});
+    next.recover();
     EXPECT_EQ(stage_state("T"), "done");
     EXPECT_EQ(stage_state("I"), "queued");
     EXPECT_EQ(bake_state("a"), "running");  // one of its stages is done
@@ -156,9 +165,21 @@ TEST_F(QueueTest, WhatEndedLongAgoAndWithoutAResultIsForgotten) {
 TEST_F(QueueTest, ALostBlobStartsItsStagesAndBakesAgain) {
     queue.submit({bake("a", "T", "")});
     queue.done(*queue.claim(), {{"x.npy", std::string(64, 'a'), 1}}, "{}");
-    queue.blob_lost(std::string(64, 'a'));
+    database.write([&](Sql& sql) { queue.blob_lost(sql, std::string(64, 'a')); });
     EXPECT_EQ(bake_state("a"), "queued");
     EXPECT_EQ(queue.claim()->key, "T");
+}
+
+TEST_F(QueueTest, ALostBlobIsNotForgottenWhenItsStagesCannotBeQueuedAgain) {
+    const std::string digest = blob_of("lost");
+    queue.submit({bake("a", "T", "")});
+    queue.done(*queue.claim(), {{"x.npy", digest, 4}}, "{}");
+    std::filesystem::remove(store.path_of(digest));
+    EXPECT_THROW(store.open(digest, [](Sql&) { throw std::runtime_error("the disk is full"); }), std::runtime_error);
+    EXPECT_TRUE(store.size_of(digest));  // who asks next finds the loss again
+    EXPECT_THROW(store.open(digest, [&](Sql& sql) { queue.blob_lost(sql, digest); }), LostBlob);
+    EXPECT_FALSE(store.size_of(digest));
+    EXPECT_EQ(bake_state("a"), "queued");
 }
 
 }  // namespace
