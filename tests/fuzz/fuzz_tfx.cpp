@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "core/base/error.h"
+#include "core/base/naming_file.h"
 #include "core/hair/hair_file.h"
 #include "core/hair/strand_geometry.h"
 #include "tests/fuzz/demand.h"
@@ -27,7 +28,7 @@ void check_model(const HairModel& model, std::size_t file_size) {
 
     StrandSettings settings;
     settings.width = 0.01;
-    const StrandGeometry strands = make_strand_geometry(model, settings);
+    const auto strands = naming_file("fuzz.tfx", [&] { return make_strand_geometry(model, settings); });
     demand(strands.segment_count == v - model.strand_count(), "a strand of n points has n - 1 segments");
 }
 
