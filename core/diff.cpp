@@ -144,14 +144,7 @@ std::string diff(const std::filesystem::path& first, const std::filesystem::path
     return report.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
-void discard_diff_part(const std::filesystem::path& picture) noexcept {
-    try {
-        std::error_code ignored;
-        std::filesystem::remove(part_of(picture), ignored);
-    } catch (const std::exception&) {
-        // Nothing more can be done.
-    }
-}
+void discard_diff_part(const std::filesystem::path& picture) noexcept { discard_part(picture); }
 
 std::string diff_as_lines(const std::string& report) {
     const Json object = Json::parse(report);

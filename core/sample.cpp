@@ -76,8 +76,7 @@ std::vector<std::filesystem::path> write_samples(const std::filesystem::path& fo
 
 void discard_sample_parts(const std::filesystem::path& folder) noexcept {
     try {
-        std::error_code ignored;
-        for (const char* name : sample_files) std::filesystem::remove(part_of(folder / name), ignored);
+        for (const char* name : sample_files) discard_part(folder / name);
     } catch (const std::exception&) {
         // Nothing more can be done.
     }

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "core/base/error.h"
+#include "server/store/blob_store.h"
 
 namespace hairbake {
 namespace fs = std::filesystem;
@@ -105,7 +106,7 @@ TokenSettings read_token(const toml::table& table) {
                                 [&](const toml::date_time& value) { token.expires = seconds_of(value); });
     block.done();
     if (token.name.empty()) refuse("token.name", "is missing");
-    if (token.sha256.size() != 64 || token.sha256.find_first_not_of("0123456789abcdef") != std::string::npos)
+    if (!is_digest(token.sha256))
         refuse("token.sha256", "is not 64 lower-case hexadecimal digits; `hairbaked token new` makes them");
     return token;
 }

@@ -93,11 +93,12 @@ Vec3f median_position(std::vector<Vec3f> positions) {
 /// One point far out makes the bounds so large that the strands themselves count as degenerate: A would be 1 without a
 /// word, and the traced reference would agree. It is one point where half of all lie within a hundredth of the longest
 /// side; else the segments are short by themselves, as where every point stands twice.
-void refuse_stray_point(const HairModel& model, const StrandGeometry& geometry, const SegmentCounts& counts) {
+void check_for_stray_point(const HairModel& model, const StrandGeometry& geometry, const SegmentCounts& counts) {
     const Vec3d median(median_position(model.positions));
     const auto distance = [&](const Vec3f& p) { return length(Vec3d(p) - median); };
+    const double near = 0.01 * longest_side(geometry);
     const auto nearby = std::count_if(model.positions.begin(), model.positions.end(),
-                                      [&](const Vec3f& p) { return distance(p) < 0.01 * longest_side(geometry); });
+                                      [&](const Vec3f& p) { return distance(p) < near; });
     if (2 * static_cast<std::size_t>(nearby) < model.positions.size()) return;
     const auto farthest = std::max_element(model.positions.begin(), model.positions.end(),
                                            [&](const Vec3f& a, const Vec3f& b) { return distance(a) < distance(b); });
@@ -119,7 +120,7 @@ StrandGeometry make_strand_geometry(const HairModel& model, const StrandSettings
     geometry.positions = model.positions;
     find_bounds(geometry);
     const SegmentCounts counts = find_degenerate_segments(geometry);
-    if (counts.too_short > counts.with_length / 2) refuse_stray_point(model, geometry, counts);
+    if (counts.too_short > counts.with_length / 2) check_for_stray_point(model, geometry, counts);
     return geometry;
 }
 

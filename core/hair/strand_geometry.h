@@ -50,7 +50,8 @@ inline AdjacentSegments adjacent_segments(const StrandGeometry& strands, std::ui
 /// of the bounds.
 /// Throws Error(bad_input) naming strand and vertex for a width that is not positive and finite (the message
 /// tells to give strand.width), an opacity outside [0, 1], or the point farthest out where the bounds make more than
-/// half of the segments that have a length degenerate.
+/// half of the segments that have a length degenerate and half of the points lie within 1 % of the bounds' longest side
+/// from the middle.
 StrandGeometry make_strand_geometry(const HairModel& model, const StrandSettings& settings);
 
 }  // namespace hairbake

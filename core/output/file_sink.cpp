@@ -61,6 +61,15 @@ std::filesystem::path part_of(const std::filesystem::path& file) {
     return file.parent_path() / (".part-" + file.filename().string());
 }
 
+void discard_part(const std::filesystem::path& file) noexcept {
+    try {
+        std::error_code ignored;
+        std::filesystem::remove(part_of(file), ignored);
+    } catch (const std::exception&) {
+        // Nothing more can be done.
+    }
+}
+
 void write_whole_file(const std::filesystem::path& file, std::span<const std::byte> bytes) {
     const std::filesystem::path part = part_of(file);
     std::filesystem::remove(part);
@@ -70,8 +79,7 @@ void write_whole_file(const std::filesystem::path& file, std::span<const std::by
         sink.finish();
         std::filesystem::rename(part, file);
     } catch (...) {
-        std::error_code ignored;
-        std::filesystem::remove(part, ignored);
+        discard_part(file);
         throw;
     }
 }

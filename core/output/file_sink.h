@@ -52,6 +52,9 @@ private:
 /// Where write_whole_file() writes until the file is whole: a hidden neighbour.
 std::filesystem::path part_of(const std::filesystem::path& file);
 
+/// Removes part_of(file), for who ends in the middle of it.
+void discard_part(const std::filesystem::path& file) noexcept;
+
 /// Writes a file that appears whole, in place of one that is there: `bytes` go to part_of(file) first. Nothing is
 /// left of them when that fails. Throws as FileSink does, std::filesystem::filesystem_error where the name cannot be
 /// taken.

@@ -12,7 +12,7 @@ namespace hairbake {
 
 /// Empty fields do not filter.
 struct BakeFilter {
-    std::string state, model, environment, name, batch;  ///< digests, a name's path, a batch's id
+    std::string state{}, model{}, environment{}, name{}, batch{};  ///< digests, a name's path, a batch's id
     std::int64_t cursor = INT64_MAX;
     int limit = 50;
 };

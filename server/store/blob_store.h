@@ -31,13 +31,8 @@ std::string blob_name(const std::string& digest);
 /// same transaction was done what follows from that (BlobStore::OnLoss).
 class LostBlob : public std::runtime_error {
 public:
-    explicit LostBlob(std::string digest)
-        : std::runtime_error("the stored bytes of sha256:" + digest + " were lost or spoiled"),
-          digest_(std::move(digest)) {}
-    const std::string& digest() const { return digest_; }
-
-private:
-    std::string digest_;
+    explicit LostBlob(const std::string& digest)
+        : std::runtime_error("the stored bytes of sha256:" + digest + " were lost or spoiled") {}
 };
 
 struct OpenBlob {

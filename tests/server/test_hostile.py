@@ -2,7 +2,7 @@
 import json
 import unittest
 
-from harness import PROGRAMS, Daemon, hair_bytes, hdr_bytes, quick_request, sha256
+from harness import PROGRAMS, Daemon, hair_bytes, quick_request, sha256
 from hostile_files import exr_bytes, hostile_environments, hostile_hair
 
 GROWTH_MB = 64  # of the daemon, which reads none of these files
