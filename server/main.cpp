@@ -172,7 +172,6 @@ int serve(const Settings& settings) {
         spdlog::critical("no connection can be accepted any more: the daemon ends, so that it is started anew");
         _exit(1);  // what was answered is on the disk
     });
-    rim.wait_until_serving();
     std::printf("hairbaked listens on %s\n", rim.address().c_str());
     std::fflush(stdout);
     wait_for_signal();

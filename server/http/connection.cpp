@@ -67,6 +67,10 @@ bool Connection::await_request(const std::function<bool()>& still_wanted) {
 }
 
 ssize_t Connection::read(char* data, std::size_t size) {
+    if (size == 1 && ahead_begin_ < ahead_end_) {  // the library reads a head byte by byte
+        *data = ahead_[ahead_begin_++];
+        return 1;
+    }
     if (ahead_begin_ == ahead_end_) {
         if (!flush()) return -1;
         const bool whole = size >= ahead_.size();  // not worth a copy

@@ -14,8 +14,8 @@
 #include <limits>
 
 #include "core/base/error.h"
-#include "server/http/bounded_pool.h"
 #include "server/http/connection.h"
+#include "server/http/connection_threads.h"
 #include "server/http/problem.h"
 #include "server/http/target.h"
 #include "server/jobs/service.h"
@@ -26,21 +26,12 @@ namespace {
 using namespace std::chrono_literals;
 constexpr Connection::Patience patience{.first_byte = 10s, .read = 30s, .write = 60s};
 constexpr std::chrono::milliseconds lingering = 1s, lingering_refused = 20ms;
+/// Of a body that nginx has whole with its first read (proxy_buffer_size), so that it need not look for more to keep.
+constexpr std::size_t one_read = 6144;
 const std::string any_path = "/";  // the library routes nothing: every request is made to look for this
 
 /// The current connection's request was not read to its end.
 thread_local bool body_left = false;
-
-/// Connections that wait for a thread, as the library wants them.
-class WaitingConnections : public httplib::TaskQueue {
-public:
-    WaitingConnections(int threads, int waiting) : pool_(threads, waiting) {}
-    bool enqueue(std::function<void()> job) override { return pool_.enqueue(std::move(job)); }
-    void shutdown() override { pool_.shutdown(); }
-
-private:
-    BoundedPool pool_;
-};
 
 /// A connection as the library wants it.
 class ConnectionStream : public httplib::Stream {
@@ -59,8 +50,17 @@ private:
     Connection& connection_;
 };
 
+/// What is done for a connection ends no thread, and so not the daemon.
+void or_drop(const std::function<void()>& answer) {
+    try {
+        answer();
+    } catch (const std::exception& error) {  // memory ran out where the library does not look for it
+        spdlog::error("a connection was dropped: {}", error.what());
+    }
+}
+
 /// Waits for nobody: many wait for the one thread that refuses.
-void refuse_connection(socket_t accepted) {
+void refuse_connection(int accepted) {
     Connection connection(accepted, {.first_byte = 0s, .read = 0s, .write = 0s});
     HttpReply busy = problem(503, "busy", "too many requests are waiting");
     const std::string text = "HTTP/1.1 503 Service Unavailable\r\nContent-Type: " + busy.type +
@@ -186,16 +186,16 @@ void remove_dead_socket(const std::string& path) {
 
 class Rim::Listener : public httplib::Server {
 public:
-    Listener(const RimSettings& settings, Rim::Handler handler) : handler_(std::move(handler)), accel_(settings.accel) {
-        new_task_queue = [settings] { return new WaitingConnections(settings.threads, settings.waiting); };
-        set_tcp_nodelay(true);
+    Listener(const RimSettings& settings, Rim::Handler handler)
+        : handler_(std::move(handler)),
+          accel_(settings.accel),
+          address_(bind(settings)),
+          listening_(svr_sock_.load()),
+          threads_(
+              listening_.get(), settings.threads, settings.waiting,
+              [this](int accepted) { or_drop([&] { serve_connection(accepted); }); },
+              [](int accepted) { or_drop([&] { refuse_connection(accepted); }); }) {
         set_payload_max_length(std::numeric_limits<std::size_t>::max());  // routes count for themselves
-        // Not SO_REUSEPORT, with which two daemons would share a port.
-        set_socket_options([](socket_t listening) {
-            const int yes = 1;
-            ::setsockopt(listening, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-            ::fcntl(listening, F_SETFD, FD_CLOEXEC);
-        });
         set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
             body_left = request.has_header("Content-Length") || is_chunked(request);
             std::optional<Target> target = read_target(request.target);
@@ -231,21 +231,34 @@ public:
                                 std::to_string(response.body.size()));  // errors of the library itself
         });
         set_expect_100_continue_handler([](const httplib::Request&, httplib::Response&) { return 100; });
-        bind(settings);
     }
 
-    std::string address;
+    const std::string& address() const { return address_; }
+
+    void serve() { threads_.run(); }
+
+    void stop() {
+        svr_sock_ = INVALID_SOCKET;  // as the library asks whether to go on with a long body
+        threads_.stop();
+    }
 
 private:
-    void bind(const RimSettings& settings) {
+    /// Gives the address.
+    std::string bind(const RimSettings& settings) {
+        set_tcp_nodelay(true);
+        // Not SO_REUSEPORT, with which two daemons would share a port.
+        set_socket_options([](socket_t listening) {
+            const int yes = 1;
+            ::setsockopt(listening, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+            ::fcntl(listening, F_SETFD, FD_CLOEXEC);
+        });
         if (!settings.socket.empty()) {
             remove_dead_socket(settings.socket);
             set_address_family(AF_UNIX);
             if (!bind_to_port(settings.socket, 80))
                 throw Error(ErrorKind::usage, "cannot listen on the socket " + settings.socket);
             ::chmod(settings.socket.c_str(), 0660);
-            address = "unix:" + settings.socket;
-            return;
+            return "unix:" + settings.socket;
         }
         int port = settings.port;
         const bool bound =
@@ -254,41 +267,33 @@ private:
             throw Error(ErrorKind::usage,
                         "cannot listen on " + settings.address + " port " + std::to_string(port) + "; is it in use?");
         const bool six = settings.address.find(':') != std::string::npos;
-        address = "http://" + (six ? "[" + settings.address + "]" : settings.address) + ":" + std::to_string(port);
+        return "http://" + (six ? "[" + settings.address + "]" : settings.address) + ":" + std::to_string(port);
     }
 
     void answer(const httplib::Request& from, Target target, const httplib::ContentReader* reader,
                 httplib::Response& to) {
         HttpRequest request = to_request(from, std::move(target), reader);
         HttpReply reply = handler_(request);
-        if (reply.file && !accel_.empty() && is_forwarded(request)) leave_to_nginx(reply, accel_);
+        if (is_forwarded(request)) {
+            if (reply.file && !accel_.empty()) leave_to_nginx(reply, accel_);
+            if (!reply.file && reply.body.size() <= one_read) reply.with("X-Accel-Buffering", "no");
+        }
         fill(to, std::move(reply));
     }
 
-    bool process_and_close_socket(socket_t accepted) override {
-        try {
-            if (!BoundedPool::is_refusing()) return serve_connection(accepted);
-            refuse_connection(accepted);
-        } catch (const std::exception& error) {  // memory ran out where the library does not look for it
-            spdlog::error("a connection was dropped: {}", error.what());
-        }
-        return false;
-    }
-
-    bool serve_connection(socket_t accepted) {
+    void serve_connection(int accepted) {
         Connection connection(accepted, patience);
-        if (!connection.await_request([this] { return svr_sock_ != INVALID_SOCKET; })) return false;
+        if (!connection.await_request([this] { return svr_sock_ != INVALID_SOCKET; })) return;
         body_left = true;  // until the head is understood
-        const bool served = serve_request(connection);
-        const bool sent = connection.flush();
+        serve_request(connection);
+        connection.flush();
         if (body_left) connection.linger(lingering);
-        return served && sent;
     }
 
-    bool serve_request(Connection& connection) {
+    void serve_request(Connection& connection) {
         ConnectionStream stream(connection);
         bool closed = false;
-        return process_request(stream, "", 0, "", 0, true, closed, [](httplib::Request& request) {
+        process_request(stream, "", 0, "", 0, true, closed, [](httplib::Request& request) {
             request.path = any_path;  // ours are in the target
             request.ranges.clear();   // likewise
         });
@@ -296,15 +301,17 @@ private:
 
     Rim::Handler handler_;
     const std::string accel_;
+    const std::string address_;
+    const Descriptor listening_;
+    ConnectionThreads threads_;
 };
 
 Rim::Rim(const RimSettings& settings, Handler handler)
     : listener_(std::make_unique<Listener>(settings, std::move(handler))) {}
 Rim::~Rim() = default;
 
-std::string Rim::address() const { return listener_->address; }
-void Rim::serve() { listener_->listen_after_bind(); }
-void Rim::wait_until_serving() const { listener_->wait_until_ready(); }
+std::string Rim::address() const { return listener_->address(); }
+void Rim::serve() { listener_->serve(); }
 void Rim::stop() { listener_->stop(); }
 
 }  // namespace hairbake

@@ -29,10 +29,9 @@ public:
 
     /// "http://127.0.0.1:8080" or "unix:/run/hairbaked.sock".
     std::string address() const;
-    /// Serves until stop() is called from another thread.
+    /// Serves until stop() is called from another thread, or no connection can be accepted any more.
     void serve();
-    /// Returns once serve() accepts connections in another thread; from then on stop() works.
-    void wait_until_serving() const;
+    /// Before serve() too.
     void stop();
 
 private:

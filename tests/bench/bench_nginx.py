@@ -136,7 +136,7 @@ def main():
     load = [os.getloadavg()[0]]
     plain_port = free_port()
     with Daemon(tokens=admin_token(), config="blob_mb = 4096", listen='socket = "socket"\naccel = "/blobs/"') as daemon:
-        plain = (f"\nserver {{ listen 127.0.0.1:{plain_port}; default_type application/json;\n"
+        plain = (f"\nserver {{ listen 127.0.0.1:{plain_port} reuseport; default_type application/json;\n"
                  f"access_log /dev/stdout json buffer=64k flush=1s;\n"
                  f"location = /constant {{ return 200 '{'x' * 3100}'; }}\n"
                  f"location /static/ {{ alias {daemon.path}/store/blobs/; }} }}\n")
