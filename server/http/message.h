@@ -49,9 +49,13 @@ struct HttpReply {
     std::string body;
     std::optional<FileBody> file;
 
-    HttpReply& with(std::string name, std::string value) {
+    HttpReply& with(std::string name, std::string value) & {
         headers.emplace_back(std::move(name), std::move(value));
         return *this;
+    }
+    HttpReply with(std::string name, std::string value) && {
+        headers.emplace_back(std::move(name), std::move(value));
+        return std::move(*this);
     }
 };
 

@@ -35,6 +35,7 @@ std::optional<std::map<std::string, std::string>> read_query(const std::string& 
 
 std::optional<std::string> percent_decoded(const std::string& text) {
     std::string decoded;
+    decoded.reserve(text.size());
     for (std::size_t i = 0; i < text.size(); ++i) {
         char c = text[i];
         if (c == '%') {
@@ -56,16 +57,16 @@ std::optional<Target> read_target(const std::string& text) {
     Target target;
     for (std::size_t begin = 1; begin < mark;) {
         const std::size_t end = std::min(text.find('/', begin), mark);
-        const auto segment = percent_decoded(text.substr(begin, end - begin));
+        auto segment = percent_decoded(text.substr(begin, end - begin));
         if (!segment || segment->empty() || *segment == "." || *segment == ".." ||
             segment->find('/') != std::string::npos)
             return std::nullopt;
-        target.path.push_back(*segment);
+        target.path.push_back(std::move(*segment));
         begin = end + 1;
     }
-    const auto query = read_query(mark < text.size() ? text.substr(mark + 1) : "");
+    auto query = read_query(mark < text.size() ? text.substr(mark + 1) : "");
     if (!query) return std::nullopt;
-    target.query = *query;
+    target.query = std::move(*query);
     return target;
 }
 

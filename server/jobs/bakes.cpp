@@ -145,7 +145,7 @@ std::string stage_manifest(Sql& sql, const SqlRow& bake, std::size_t column) {
 }  // namespace
 
 BakeView Bakes::get(const std::string& id) {
-    if (auto view = done_.find(id)) return *view;
+    if (auto view = done_.find(id)) return std::move(*view);
     std::uint64_t version = 0;
     bool done = false;
     BakeView answer;

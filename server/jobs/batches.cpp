@@ -140,7 +140,7 @@ std::string Batches::rebake(const std::string& text, bool dry_run) {
 }
 
 std::string Batches::get(const std::string& id) {
-    if (auto view = views_.find(id)) return *view;
+    if (auto view = views_.find(id)) return std::move(*view);
     std::uint64_t version = 0;
     Json answer;
     database_.read([&](Sql& sql) {
