@@ -13,7 +13,7 @@ class Size:
     vertices: int = 100_000
     width_scale: float = 8  # so that fewer strands cover the head as hair does
     map_width: int = 1024
-    pixels: int = 256
+    pixels: int = 200
     samples: int = 4
     light_samples: int = 16
     reference_vertices: int = 500
