@@ -1,9 +1,10 @@
 #include "server/http/connection_threads.h"
 
+#include <spdlog/spdlog.h>
 #include <sys/socket.h>
 
 #include <cerrno>
-#include <chrono>
+#include <system_error>
 #include <thread>
 
 namespace hairbake {
@@ -11,8 +12,14 @@ namespace {
 
 constexpr std::size_t most_accepting = 4;  // so many connections come at once without a thread to be woken
 
-/// Whether accept() can work again later: a client went away, a signal came, descriptors or memory are short.
-bool may_pass(int error) { return error != EINVAL && error != EBADF && error != ENOTSOCK; }
+using Clock = std::chrono::steady_clock;
+
+/// Whether accept() cannot work any more.
+bool is_final(int error) { return error == EINVAL || error == EBADF || error == ENOTSOCK; }
+
+/// Whether the next accept() can work: a signal came, or the client went away. The rest is a shortage of descriptors or
+/// memory, which may pass.
+bool is_nothing(int error) { return error == EINTR || error == EAGAIN || error == ECONNABORTED; }
 
 }  // namespace
 
@@ -78,11 +85,24 @@ bool ConnectionThreads::await_turn(std::condition_variable& woken) {
 int ConnectionThreads::accept() {
     const int socket = ::accept4(listening_, nullptr, nullptr, SOCK_CLOEXEC);
     if (socket >= 0) return socket;
-    if (!may_pass(errno))
+    const int error = errno;
+    if (is_final(error)) {
         stop();
-    else
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    } else if (!is_nothing(error)) {
+        complain(error);
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
     return -1;
+}
+
+/// Once a minute.
+void ConnectionThreads::complain(int error) {
+    {
+        const std::lock_guard lock(mutex_);
+        if (Clock::now() < silent_until_) return;
+        silent_until_ = Clock::now() + std::chrono::minutes(1);
+    }
+    spdlog::error("no connection can be accepted for now: {}", std::generic_category().message(error));
 }
 
 ConnectionThreads::Place ConnectionThreads::place(int accepted) {

@@ -1,6 +1,7 @@
 // The threads that accept connections and answer them: a fixed number, and a queue that does not grow without end.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <mutex>
@@ -9,9 +10,9 @@
 namespace hairbake {
 
 /// A thread serves the connection that it accepted itself, so that none is handed from one thread to another while few
-/// come. A few threads accept at a time and the others sleep; who became idle last accepts next: its stack and its
-/// memory are still in the cache. When all `threads` serve, one more accepts: what it accepts waits in the order in
-/// which it came, and what finds the queue full is refused.
+/// come. A few threads accept at a time and the others sleep; of those, who fell asleep last is woken first: its stack
+/// and its memory are still in the cache. When all `threads` serve, one more accepts: what it accepts waits in the
+/// order in which it came, and what finds the queue full is refused.
 class ConnectionThreads {
 public:
     /// Gets an accepted connection's socket, which it closes. Must not throw.
@@ -33,6 +34,7 @@ private:
     void work();
     bool await_turn(std::condition_variable& woken);
     int accept();
+    void complain(int error);
     Place place(int accepted);
     int next_waiting();
 
@@ -41,8 +43,9 @@ private:
     const Handler serve_, refuse_;
     std::mutex mutex_;  ///< of what follows
     bool ending_ = false;
+    std::chrono::steady_clock::time_point silent_until_{};
     std::size_t accepting_ = 0, serving_ = 0;     ///< threads
-    std::vector<int> waiting_;                    ///< sockets; none while a thread has nothing to serve
+    std::vector<int> waiting_;                    ///< sockets; none while fewer than `threads` serve
     std::vector<std::condition_variable*> idle_;  ///< of sleeping threads; the last is woken first
 };
 

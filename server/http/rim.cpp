@@ -156,6 +156,12 @@ void leave_to_nginx(HttpReply& reply, const std::string& accel) {
     reply.file.reset();
 }
 
+/// Whether nginx compresses it (gzip_min_length): a part at a time unless it may keep the whole.
+bool is_packed(const HttpRequest& request, const HttpReply& reply) {
+    return reply.body.size() >= 1000 &&
+           request.header("Accept-Encoding").value_or("").find("gzip") != std::string::npos;
+}
+
 void fill(httplib::Response& to, HttpReply reply) {
     to.status = reply.status;
     for (const auto& [name, value] : reply.headers) to.set_header(name, value);
@@ -276,7 +282,8 @@ private:
         HttpReply reply = handler_(request);
         if (is_forwarded(request)) {
             if (reply.file && !accel_.empty()) leave_to_nginx(reply, accel_);
-            if (!reply.file && reply.body.size() <= one_read) reply.with("X-Accel-Buffering", "no");
+            if (!reply.file && reply.body.size() <= one_read && !is_packed(request, reply))
+                reply.with("X-Accel-Buffering", "no");
         }
         fill(to, std::move(reply));
     }

@@ -135,7 +135,7 @@ def decoupling(scene, page):
                  "the environment with traced shadow rays inside (mode reference). RMSE over the mean, over the pixels "
                  "that show hair; the head hides light too. The rows leave one approximation out after another; "
                  "directional transmittance is baked by the same sweep and put inside the sum.")
-    table, shown = {}, []
+    table = {}
     # Bakes of hair alone may be lit by any sky.
     traced, _ = scene.bake("traced", head=True, transmittance__method="trace")
     harmonics = {bands: scene.bake(f"sh-transmittance-{bands}", head=True, transmittance__sh_bands=bands,
@@ -151,7 +151,7 @@ def decoupling(scene, page):
             variants[f"every light, SH transmittance of {bands} bands"] = (more, ("--mode", "directional", *lit))
         variants["every light, bent cone"] = (harmonics[2], ("--mode", "directional", "--directional",
                                                               "bent-cone", *lit))
-        shown.append((f"{reference}.png", f"{label}: reference"))
+        shown = [(f"{reference}.png", f"{label}: reference")]
         for name, (source, arguments) in variants.items():
             short = f"decoupled-{sky}-{list(variants).index(name)}"
             picture = scene.picture(short, source, *black, *arguments, exposure=EXPOSURES[sky])
@@ -160,6 +160,6 @@ def decoupling(scene, page):
             if name.startswith("maps") or "of 4" in name or "cone" in name:
                 shown += [(f"{picture}.png", f"{label}: {name}"), (figures["picture"], f"{label}: minus reference")]
         table.setdefault("noise of the reference, taken off above", []).append(percent(noise))
-    page.pictures(shown)
+        page.pictures(shown)
     page.table(["against the reference", *SKIES.values()], [[name, *values] for name, values in table.items()])
     page.commands(scene.hairbake.take_commands())

@@ -8,8 +8,8 @@ body { font: 15px/1.5 "DejaVu Sans", sans-serif; background: #16181c; color: #dc
 h1, h2 { color: #fff } h2 { border-top: 1px solid #3e434c; padding-top: 1em; margin-top: 2em } a { color: #eca754 }
 table { border-collapse: collapse; margin: 1em 0 } td, th { border: 1px solid #3e434c; padding: .25em .7em; text-align: right }
 td:first-child, th { text-align: left; background: #202329 }
-figure { display: inline-block; margin: .4em; vertical-align: top } figure img { display: block; image-rendering: pixelated }
-figcaption { font-size: 12px; color: #a6adb8; max-width: 330px } details { color: #a6adb8 } pre { white-space: pre-wrap; font-size: 12px }
+figure { display: inline-block; width: min-content; margin: .4em; vertical-align: top } figure img { display: block; image-rendering: pixelated }
+figcaption { font-size: 12px; color: #a6adb8 } details { color: #a6adb8 } pre { white-space: pre-wrap; font-size: 12px }
 """
 
 
@@ -33,13 +33,13 @@ class Page:
                           "\n".join(f"<tr>{cells(row, 'td')}</tr>" for row in rows) + "</table>")
 
     def pictures(self, items):
-        """(file, caption) pairs side by side."""
+        """(file, caption) pairs side by side, beginning on a new line."""
         figures = []
         for file, caption in items:
             link = os.path.relpath(self.root / file, self.root / self.folder)
             figures.append(f'<figure><img src="{html.escape(link)}" alt="{html.escape(caption)}">'
                            f"<figcaption>{html.escape(caption)}</figcaption></figure>")
-        self.parts.append("\n".join(figures))
+        self.parts.append("<div>" + "\n".join(figures) + "</div>")
 
     def note(self, text):
         """A paragraph of HTML."""
