@@ -138,6 +138,13 @@ class Daemon:
             time.sleep(0.05)
         return children[0] if running else None
 
+    def wait_for_log(self, words):
+        end = time.monotonic() + PATIENCE
+        while words not in (log := (self.path / "log").read_text()):
+            if time.monotonic() > end:
+                raise AssertionError(f"{words!r} is not in the log: {log}")
+            time.sleep(0.05)
+
     def ask(self, method, path, body=None, headers=None):
         connection = http.client.HTTPConnection("localhost")
         connection.sock = self.connect()

@@ -112,6 +112,18 @@ class Connections(unittest.TestCase):
                 s.close()
             self.assertEqual(d.ask("GET", "/healthz").status, 200)
 
+    def test_out_of_descriptors_it_says_so_and_serves_again_when_there_are_some(self):
+        with Daemon() as d:
+            d.stop()
+            d.before = ["prlimit", "--nofile=48:48"]  # it has about twenty when nobody asks
+            d.start()
+            idle = [d.connect() for _ in range(60)]
+            d.wait_for_log("no connection can be accepted for now: Too many open files")
+            for s in idle:
+                s.close()
+            self.assertEqual(d.ask("GET", "/healthz").status, 200)
+            self.assertEqual((d.path / "log").read_text().count("no connection can be accepted"), 1)  # not for each attempt
+
     def test_the_reply_to_a_head_that_is_not_understood_is_not_lost_in_a_reset(self):
         with Daemon() as d:
             for head in (b"FOO / HTTP/1.1\r\nX-Long: " + b"a" * 7000, b"GET / HTTP/1.1\r\nHost: localhost\r\nCookie: " + b"a" * 30000):

@@ -136,6 +136,23 @@ class FilesOverLoopback(FilesTest, unittest.TestCase):
         self.assertEqual((left.status, left.body, left.headers["X-Accel-Redirect"]),
                          (200, b"", f"/blobs/{sha256(data)[:2]}/{sha256(data)}"))
 
+    def test_short_replies_need_no_buffer_and_only_nginx_learns_it(self):
+        def word(path, **more):
+            reply = self.daemon.ask("GET", path, headers={"Authorization": f"Bearer {TOKEN}", **more})
+            self.assertEqual(reply.status, 200)
+            return len(reply.body), reply.headers.get("X-Accel-Buffering")
+
+        forwarded = {"X-Forwarded-For": "192.0.2.1"}
+        self.assertEqual(word("/v1/bakes", **forwarded)[1], "no")
+        self.assertIsNone(word("/v1/bakes")[1])
+        size, buffering = word("/openapi.json", **forwarded)
+        self.assertGreater(size, 6144)  # more than nginx has with its first read
+        self.assertIsNone(buffering)
+        size, buffering = word("/metrics", **forwarded, **{"Accept-Encoding": "gzip"})
+        self.assertGreater(size, 1000)  # nginx compresses it
+        self.assertIsNone(buffering)
+        self.assertIsNone(self.front.ask("GET", "/v1/bakes").headers.get("X-Accel-Buffering"))
+
 
 class FilesOverSocket(FilesTest, unittest.TestCase):
     listen = 'socket = "socket"'
