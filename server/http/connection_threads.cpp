@@ -62,8 +62,7 @@ void ConnectionThreads::work() {
             case Place::at_door:
                 refuse_(socket);
                 break;
-            case Place::nowhere:
-            case Place::in_queue:
+            case Place::elsewhere:  // in the queue, or there is none
                 break;
         }
     }
@@ -108,11 +107,11 @@ void ConnectionThreads::complain(int error) {
 ConnectionThreads::Place ConnectionThreads::place(int accepted) {
     const std::lock_guard lock(mutex_);
     --accepting_;
-    if (accepted < 0) return Place::nowhere;
+    if (accepted < 0) return Place::elsewhere;
     if (serving_ == threads_) {
         if (waiting_.size() == most_waiting_) return Place::at_door;
         waiting_.push_back(accepted);
-        return Place::in_queue;
+        return Place::elsewhere;
     }
     ++serving_;
     if (accepting_ == 0 && !idle_.empty()) {

@@ -29,7 +29,7 @@ public:
     void stop();
 
 private:
-    enum class Place { nowhere, with_thread, in_queue, at_door };
+    enum class Place { with_thread, at_door, elsewhere };
 
     void work();
     bool await_turn(std::condition_variable& woken);

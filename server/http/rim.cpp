@@ -281,8 +281,9 @@ private:
         HttpRequest request = to_request(from, std::move(target), reader);
         HttpReply reply = handler_(request);
         if (is_forwarded(request)) {
-            if (reply.file && !accel_.empty()) leave_to_nginx(reply, accel_);
-            if (!reply.file && reply.body.size() <= one_read && !is_packed(request, reply))
+            if (reply.file && !accel_.empty())
+                leave_to_nginx(reply, accel_);
+            else if (!reply.file && reply.body.size() <= one_read && !is_packed(request, reply))
                 reply.with("X-Accel-Buffering", "no");
         }
         fill(to, std::move(reply));

@@ -113,10 +113,7 @@ class Connections(unittest.TestCase):
             self.assertEqual(d.ask("GET", "/healthz").status, 200)
 
     def test_out_of_descriptors_it_says_so_and_serves_again_when_there_are_some(self):
-        with Daemon() as d:
-            d.stop()
-            d.before = ["prlimit", "--nofile=48:48"]  # it has about twenty when nobody asks
-            d.start()
+        with Daemon(before=["prlimit", "--nofile=48:48"]) as d:  # it has about twenty when nobody asks
             idle = [d.connect() for _ in range(60)]
             d.wait_for_log("no connection can be accepted for now: Too many open files")
             for s in idle:

@@ -84,93 +84,95 @@ struct House {
     bool open = false;
 };
 
-/// Threads that run beside the test.
+/// The threads of a house behind a door, run beside the test.
 struct Running {
-    Running(Door& door, House& house, int count, int waiting)
+    Running(int count, int waiting)
         : threads(
-              door.listening, count, waiting, [&house](int socket) { house.serve(socket); },
-              [&house](int socket) { house.refuse(socket); }),
+              door.listening, count, waiting, [this](int socket) { house.serve(socket); },
+              [this](int socket) { house.refuse(socket); }),
           runner([this] { threads.run(); }) {}
+    ~Running() {  // of a test that was left in the middle
+        house.let_go();
+        threads.stop();
+    }
+    void knock(int times) {
+        for (int i = 0; i < times; ++i) door.knock();
+    }
+    void end() {
+        threads.stop();
+        runner.join();
+    }
 
+    Door door;
+    House house;
     ConnectionThreads threads;
     std::jthread runner;
 };
 
-TEST(ConnectionThreads, ServeSoManyAtOnceHoldSoManyMoreAndRefuseTheRest) {
-    Door door;
+/// Runs threads in this one: returns when they have ended.
+int served_by(int listening, bool stopped_before) {
     House house;
-    Running running(door, house, 3, 2);
+    ConnectionThreads threads(
+        listening, 4, 4, [&](int socket) { house.serve(socket); }, [&](int socket) { house.refuse(socket); });
+    if (stopped_before) threads.stop();
+    threads.run();
+    return house.served;
+}
+
+TEST(ConnectionThreads, ServeSoManyAtOnceHoldSoManyMoreAndRefuseTheRest) {
+    Running r(3, 2);
     // 3 are served and 2 wait, so that of 9 the other 4 are refused, whatever the order.
-    for (int i = 0; i < 9; ++i) door.knock();
-    house.await([&] { return house.serving == 3 && house.refused == 4; });
-    house.let_go();
-    house.await([&] { return house.served == 5; });
-    running.threads.stop();
-    running.runner.join();
-    EXPECT_EQ(house.most_serving, 3);
-    EXPECT_EQ(house.served, 5);
-    EXPECT_EQ(house.refused, 4);
+    r.knock(9);
+    r.house.await([&] { return r.house.serving == 3 && r.house.refused == 4; });
+    r.house.let_go();
+    r.house.await([&] { return r.house.served == 5; });
+    r.end();
+    EXPECT_EQ(r.house.most_serving, 3);
+    EXPECT_EQ(r.house.served, 5);
+    EXPECT_EQ(r.house.refused, 4);
 }
 
 TEST(ConnectionThreads, AllServeAtOnceThoughFewAcceptAtATime) {
-    Door door;
-    House house;
-    Running running(door, house, 20, 1);
-    for (int i = 0; i < 20; ++i) door.knock();
-    house.await([&] { return house.serving == 20; });
-    house.let_go();
-    running.threads.stop();
-    running.runner.join();
-    EXPECT_EQ(house.served, 20);
-    EXPECT_EQ(house.refused, 0);
+    Running r(20, 1);
+    r.knock(20);
+    r.house.await([&] { return r.house.serving == 20; });
+    r.house.let_go();
+    r.end();
+    EXPECT_EQ(r.house.served, 20);
+    EXPECT_EQ(r.house.refused, 0);
 }
 
 TEST(ConnectionThreads, ServeThousandsOneAfterAnotherAndLoseNone) {
-    Door door;
-    House house;
-    house.let_go();
-    Running running(door, house, 8, 8);
-    for (int i = 1; i <= 2000; ++i) {
-        door.knock();
-        if (i % 8 != 0) continue;  // no more at once than are served, and as many may wait
-        house.await([&] { return house.served == i; });
-        door.forget_clients();
+    Running r(8, 8);
+    r.house.let_go();
+    for (int total = 8; total <= 2000; total += 8) {
+        r.knock(8);  // no more at once than are served, and as many may wait
+        r.house.await([&] { return r.house.served == total; });
+        r.door.forget_clients();
     }
-    running.threads.stop();
-    running.runner.join();
-    EXPECT_EQ(house.served, 2000);
-    EXPECT_EQ(house.refused, 0);
+    r.end();
+    EXPECT_EQ(r.house.served, 2000);
+    EXPECT_EQ(r.house.refused, 0);
 }
 
 TEST(ConnectionThreads, WhatWaitsIsServedAfterTheStop) {
-    Door door;
-    House house;
-    Running running(door, house, 1, 3);
-    for (int i = 0; i < 5; ++i) door.knock();  // the fifth is refused: then the others are in
-    house.await([&] { return house.serving == 1 && house.refused == 1; });
-    running.threads.stop();
-    house.let_go();
-    running.runner.join();
-    EXPECT_EQ(house.served, 4);
+    Running r(1, 3);
+    r.knock(5);  // the fifth is refused: then the others are in
+    r.house.await([&] { return r.house.serving == 1 && r.house.refused == 1; });
+    r.threads.stop();
+    r.house.let_go();
+    r.runner.join();
+    EXPECT_EQ(r.house.served, 4);
 }
 
 TEST(ConnectionThreads, EndAtOnceWhenTheyWereStoppedBefore) {
-    Door door;
-    House house;
-    ConnectionThreads threads(
-        door.listening, 4, 4, [&](int socket) { house.serve(socket); }, [&](int socket) { house.refuse(socket); });
-    threads.stop();
-    threads.run();
-    EXPECT_EQ(house.served, 0);
+    const Door door;
+    EXPECT_EQ(served_by(door.listening, true), 0);
 }
 
 TEST(ConnectionThreads, EndWhenTheSocketCannotAccept) {
-    House house;
     const int deaf = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);  // listens to nothing: EINVAL
-    ConnectionThreads threads(
-        deaf, 4, 4, [&](int socket) { house.serve(socket); }, [&](int socket) { house.refuse(socket); });
-    threads.run();
-    EXPECT_EQ(house.served, 0);
+    EXPECT_EQ(served_by(deaf, false), 0);
     ::close(deaf);
 }
 
