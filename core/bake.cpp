@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/base/digest.h"
-#include "core/base/direction_set.h"
 #include "core/base/naming_file.h"
 #include "core/base/parallel.h"
 #include "core/environment/environment_files.h"
@@ -19,7 +18,8 @@
 #include "core/output/result_files.h"
 #include "core/output/result_folder.h"
 #include "core/reference/tracer.h"
-#include "core/request_keys.h"
+#include "core/request/request_keys.h"
+#include "core/visibility/direction_set.h"
 #include "core/volume/opacity_transmittance.h"
 
 namespace hairbake {
@@ -27,13 +27,13 @@ namespace {
 
 /// Runs `body` as the stage `name`: tells its begin and end, and adds its wall time to the result's.
 template <class Body>
-void run_stage(BakeResult& result, Progress& progress, const std::string& name, const Body& body) {
+void run_stage(BakeResult& result, BakeProgress& progress, const std::string& name, const Body& body) {
     progress.check();
-    progress.report(name, 0);
+    progress.enter(name);
     const auto start = std::chrono::steady_clock::now();
     body();
     result.measured.timings_s[name] += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    progress.report(name, 1);
+    progress.report(1);
 }
 
 /// The largest resident size of this process so far; 0 where the kernel does not tell.
@@ -92,7 +92,7 @@ void read_occluder(BakeResult& result) {
         result.warnings.push_back("the occluder's triangles run clockwise seen from outside: they are turned round");
 }
 
-void read_hair_stage(BakeResult& result, Progress& progress) {
+void read_hair_stage(BakeResult& result, BakeProgress& progress) {
     run_stage(result, progress, "read_hair", [&] {
         const BakeRequest& request = result.request;
         result.hair_inputs.hair = digest_of_file(*request.hair);
@@ -110,8 +110,9 @@ void read_hair_stage(BakeResult& result, Progress& progress) {
 Transmittance transmittance_of(const TransmittanceScene& baked, const TransmittanceSettings& settings,
                                std::optional<StrandScene>& scene, Progress& progress) {
     if (settings.method == TransmittanceMethod::trace) {
-        scene.emplace(baked.strands, progress, baked.occluder);
-        return trace_all(*scene, baked, settings, progress);
+        ProgressPart building = progress.part(0, 0.1), tracing = progress.part(0.1, 1);
+        scene.emplace(baked.strands, building, baked.occluder);
+        return trace_all(*scene, baked, settings, tracing);
     }
     if (settings.method == TransmittanceMethod::opacity_maps)
         return bake_transmittance_opacity_maps(baked, settings, progress);
@@ -119,7 +120,7 @@ Transmittance transmittance_of(const TransmittanceScene& baked, const Transmitta
 }
 
 /// Hair in memory to A in memory, and A's error bar.
-void transmittance_stage(BakeResult& result, Progress& progress) {
+void transmittance_stage(BakeResult& result, BakeProgress& progress) {
     const TransmittanceSettings& settings = result.request.transmittance;
     StrandGeometry strands;
     std::optional<StrandScene> scene;
@@ -137,13 +138,14 @@ void transmittance_stage(BakeResult& result, Progress& progress) {
     add_warnings(result, result.transmittance->warnings);
     if (settings.reference_vertices == 0) return;
     run_stage(result, progress, "reference", [&] {
-        if (!scene) scene.emplace(strands, progress, occluder);
+        ProgressPart building = progress.part(0, 0.5), tracing = progress.part(0.5, 1);
+        if (!scene) scene.emplace(strands, building, occluder);
         result.error_bar =
-            measure_error(*scene, result.transmittance->average, settings.reference_vertices, settings.seed, progress);
+            measure_error(*scene, result.transmittance->average, settings.reference_vertices, settings.seed, tracing);
     });
 }
 
-void read_environment_stage(BakeResult& result, Progress& progress) {
+void read_environment_stage(BakeResult& result, BakeProgress& progress) {
     run_stage(result, progress, "read_environment", [&] {
         const std::string& file = *result.request.environment;
         result.environment_digest = digest_of_environment(file);
@@ -153,7 +155,7 @@ void read_environment_stage(BakeResult& result, Progress& progress) {
     add_warnings(result, result.environment->warnings);
 }
 
-void irradiance_stage(BakeResult& result, Progress& progress) {
+void irradiance_stage(BakeResult& result, BakeProgress& progress) {
     run_stage(result, progress, "irradiance",
               [&] { result.irradiance = bake_irradiance(*result.environment, result.request.irradiance, progress); });
     result.environment->pixels = {};
@@ -162,7 +164,7 @@ void irradiance_stage(BakeResult& result, Progress& progress) {
 
 }  // namespace
 
-BakeResult bake(const BakeRequest& request, int threads, Progress& progress) {
+BakeResult bake(const BakeRequest& request, int threads, BakeProgress& progress) {
     validate(request);
     BakeResult result;
     result.request = request;
@@ -186,7 +188,7 @@ BakeResult bake(const BakeRequest& request, int threads, Progress& progress) {
     return result;
 }
 
-void write_result(BakeResult& result, const std::filesystem::path& folder, Progress& progress) {
+void write_result(BakeResult& result, const std::filesystem::path& folder, BakeProgress& progress) {
     std::optional<ResultFolder> target;
     std::vector<WrittenFile> files;
     run_stage(result, progress, "write", [&] {

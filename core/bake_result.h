@@ -13,8 +13,8 @@
 #include "core/mesh/mesh_topology.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/reference/error_bar.h"
-#include "core/request.h"
-#include "core/request_keys.h"
+#include "core/request/request.h"
+#include "core/request/request_keys.h"
 #include "core/volume/transmittance.h"
 
 namespace hairbake {

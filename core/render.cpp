@@ -10,7 +10,6 @@
 #include "core/base/error.h"
 #include "core/base/naming_file.h"
 #include "core/base/parallel.h"
-#include "core/camera_json.h"
 #include "core/environment/light_set.h"
 #include "core/hair/strand_geometry.h"
 #include "core/hair/tangents.h"
@@ -19,6 +18,7 @@
 #include "core/output/file_sink.h"
 #include "core/output/image_file.h"
 #include "core/output/tone.h"
+#include "core/render/camera_json.h"
 #include "core/render_input.h"
 
 namespace hairbake {
@@ -134,10 +134,11 @@ void with_lighting(const RenderRequest& request, const RenderInput& input, const
     }
 }
 
-RenderedPicture render_input(const RenderRequest& request, const RenderInput& input, Progress& progress) {
+RenderedPicture render_input(const RenderRequest& request, const RenderInput& input, BakeProgress& progress) {
     const StrandGeometry strands =
         naming_file(*input.bake.hair, [&] { return make_strand_geometry(input.hair, input.bake.strand); });
     const std::vector<Vec3f> tangents = vertex_tangents(input.hair);
+    progress.enter("reference");
     const StrandScene scene(strands, progress, input.occluder ? &*input.occluder : nullptr);
     const FirstHits hits(scene, input.mesh ? &*input.mesh : nullptr);
     const std::optional<LightSum> lights = make_lights(input, progress);
@@ -153,6 +154,7 @@ RenderedPicture render_input(const RenderRequest& request, const RenderInput& in
         shown.mesh_albedo = vector_of(request.look.mesh_albedo);
         if (request.background && input.environment) shown.background = &*input.environment;
         const auto start = std::chrono::steady_clock::now();
+        progress.enter("render");
         picture.pixels = render_frame(shown, camera, request.frame, progress);
         picture.render_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     });
@@ -178,7 +180,7 @@ std::vector<std::uint8_t> screen_bytes(const RenderedPicture& picture, double st
 
 }  // namespace
 
-RenderedPicture render(const RenderRequest& request, int threads, Progress& progress) {
+RenderedPicture render(const RenderRequest& request, int threads, BakeProgress& progress) {
     validate(request);
     RenderedPicture picture;
     try {

@@ -11,7 +11,7 @@
 #include "core/base/progress.h"
 #include "core/render/camera.h"
 #include "core/render/renderer.h"
-#include "core/request.h"
+#include "core/request/request.h"
 
 namespace hairbake {
 
@@ -65,7 +65,7 @@ struct RenderedPicture {
 /// Validates, reads, bakes where needed and renders on `threads` threads (0: one per core). Stages reported: those of
 /// bake() and "render". Throws Error: usage naming the field, bad_input naming the file (also when a given file is not
 /// the one that the result was baked from), out_of_resources, cancelled.
-RenderedPicture render(const RenderRequest& request, int threads, Progress& progress);
+RenderedPicture render(const RenderRequest& request, int threads, BakeProgress& progress);
 
 /// Stops that bring the brighter tenth of what is not black to a bright but unclipped tone (output/tone.h); 0 for
 /// channels that are no light.

@@ -93,7 +93,7 @@ RenderInput from_folder(const RenderRequest& request) {
     return input;
 }
 
-RenderInput from_bake(const RenderRequest& request, Progress& progress) {
+RenderInput from_bake(const RenderRequest& request, BakeProgress& progress) {
     RenderInput input;
     input.bake = request.bake;
     if (!request.bake.hair) throw Error(ErrorKind::usage, "give a result folder, or --hair and --env", "hair");
@@ -120,10 +120,12 @@ bool shows_light(const RenderRequest& request) {
     return request.mode != ShadingMode::baked || (channel != Channel::transmittance && channel != Channel::tangent);
 }
 
-RenderInput read_render_input(const RenderRequest& request, Progress& progress) {
+RenderInput read_render_input(const RenderRequest& request, BakeProgress& progress) {
     RenderInput input = request.result ? from_folder(request) : from_bake(request, progress);
-    if (needs_environment(request))
+    if (needs_environment(request)) {
+        progress.enter("read_environment");
         input.environment = read_environment(*input.bake.environment, input.bake.environment_settings, progress);
+    }
     if (request.mesh) input.mesh = read_mesh(*request.mesh);
     progress.check();
     return input;

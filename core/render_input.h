@@ -29,6 +29,6 @@ struct RenderInput {
 bool shows_light(const RenderRequest& request);
 
 /// Reads the result folder, or bakes in memory what the mode needs. Throws as render().
-RenderInput read_render_input(const RenderRequest& request, Progress& progress);
+RenderInput read_render_input(const RenderRequest& request, BakeProgress& progress);
 
 }  // namespace hairbake

@@ -8,7 +8,7 @@
 #include "core/base/error.h"
 #include "core/output/manifest.h"
 #include "core/output/npy.h"
-#include "core/request_json.h"
+#include "core/request/request_json.h"
 
 namespace hairbake {
 namespace fs = std::filesystem;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/irradiance/irradiance_maps.h"
-#include "core/request.h"
+#include "core/request/request.h"
 
 namespace hairbake {
 

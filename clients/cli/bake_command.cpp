@@ -19,20 +19,20 @@ struct BakeOptions {
 };
 
 /// Rough shares of time; the estimate of the time left corrects itself as the bake goes on.
-std::vector<PlannedStage> plan(const BakeRequest& request) {
-    std::vector<PlannedStage> stages;
+std::vector<PlannedPhase> plan(const BakeRequest& request) {
+    std::vector<PlannedPhase> phases;
     if (request.hair) {
         const bool trace = request.transmittance.method == TransmittanceMethod::trace;
-        stages.push_back({"read_hair", 1});
-        stages.push_back({"transmittance", trace ? 100.0 : 10.0});
-        if (request.transmittance.reference_vertices > 0) stages.push_back({"reference", 10});
+        phases.push_back({"read_hair", 1});
+        phases.push_back({"transmittance", trace ? 100.0 : 10.0});
+        if (request.transmittance.reference_vertices > 0) phases.push_back({"reference", 10});
     }
     if (request.environment) {
-        stages.push_back({"read_environment", 2});
-        stages.push_back({"irradiance", 3});
+        phases.push_back({"read_environment", 2});
+        phases.push_back({"irradiance", 3});
     }
-    stages.push_back({"write", 4});
-    return stages;
+    phases.push_back({"write", 4});
+    return phases;
 }
 
 std::string summary(const BakeResult& result, const std::string& folder) {

@@ -3,7 +3,7 @@
 
 #include "clients/cli/commands.h"
 #include "clients/cli/signal_watch.h"
-#include "core/compare.h"
+#include "core/tools/compare.h"
 
 namespace hairbake {
 

@@ -3,7 +3,7 @@
 
 #include "clients/cli/commands.h"
 #include "clients/cli/signal_watch.h"
-#include "core/diff.h"
+#include "core/tools/diff.h"
 
 namespace hairbake {
 

@@ -3,7 +3,7 @@
 
 #include "clients/cli/commands.h"
 #include "clients/cli/signal_watch.h"
-#include "core/inspect.h"
+#include "core/tools/inspect.h"
 
 namespace hairbake {
 

@@ -2,8 +2,8 @@
 #include <CLI/CLI.hpp>
 
 #include "clients/cli/commands.h"
-#include "core/request_json.h"
-#include "core/request_presets.h"
+#include "core/request/request_json.h"
+#include "core/request/request_presets.h"
 
 namespace hairbake {
 namespace {

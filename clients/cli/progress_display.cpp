@@ -15,45 +15,56 @@ using Clock = std::chrono::steady_clock;
 
 /// What a display shows.
 struct Reading {
-    std::string_view stage;
-    double stage_fraction, fraction;
+    std::string_view phase;
+    double phase_fraction, fraction;
     double elapsed;  ///< seconds
     double left;     ///< seconds, negative while there is no estimate
 };
 
-/// Turns reports of stages into readings of the whole, a few a second.
-class Display : public Progress {
+/// Turns reports of phases into readings of the whole, a few a second.
+class Display : public BakeProgress {
 public:
-    explicit Display(const std::vector<PlannedStage>& stages) : stages_(stages) {
-        for (const PlannedStage& stage : stages_) total_ += stage.share;
+    explicit Display(const std::vector<PlannedPhase>& phases)
+        : phases_(phases), phase_(phases.empty() ? "" : phases.front().name) {
+        for (const PlannedPhase& phase : phases_) total_ += phase.share;
     }
 
-    void report(std::string_view stage, double stage_fraction) final {
+    void enter(std::string_view phase) final {
+        {
+            const std::lock_guard lock(mutex_);
+            phase_ = phase;
+            shown_ = {};
+        }
+        report(0);
+    }
+
+    void report(double phase_fraction) final {
         const std::unique_lock lock(mutex_, std::try_to_lock);
         if (!lock) return;  // another thread shows something just as new
         const Clock::time_point now = Clock::now();
-        if (now - shown_ < std::chrono::milliseconds(100) && stage_fraction > 0 && stage_fraction < 1) return;
+        if (now - shown_ < std::chrono::milliseconds(100) && phase_fraction < 1) return;
         shown_ = now;
-        fraction_ = std::max(fraction_, fraction_at(stage, stage_fraction));
+        fraction_ = std::max(fraction_, fraction_at(phase_fraction));
         const double elapsed = std::chrono::duration<double>(now - start_).count();
         const bool known = fraction_ > 0.02 && elapsed > 0.2;
-        show({stage, stage_fraction, fraction_, elapsed, known ? elapsed * (1 - fraction_) / fraction_ : -1});
+        show({phase_, phase_fraction, fraction_, elapsed, known ? elapsed * (1 - fraction_) / fraction_ : -1});
     }
 
 protected:
     virtual void show(const Reading& reading) = 0;
 
 private:
-    double fraction_at(std::string_view stage, double stage_fraction) const {
+    double fraction_at(double phase_fraction) const {
         double before = 0;
-        for (const PlannedStage& planned : stages_) {
-            if (planned.name == stage) return (before + planned.share * std::clamp(stage_fraction, 0.0, 1.0)) / total_;
+        for (const PlannedPhase& planned : phases_) {
+            if (planned.name == phase_) return (before + planned.share * std::clamp(phase_fraction, 0.0, 1.0)) / total_;
             before += planned.share;
         }
-        return 0;  // a stage that nobody planned moves nothing
+        return 0;  // a phase that is not planned moves nothing
     }
 
-    std::vector<PlannedStage> stages_;
+    std::vector<PlannedPhase> phases_;
+    std::string phase_;
     double total_ = 0, fraction_ = 0;
     Clock::time_point start_ = Clock::now(), shown_{};
     std::mutex mutex_;
@@ -73,7 +84,7 @@ protected:
         std::string left;
         if (reading.left >= 0) left = ", " + std::to_string(static_cast<long>(reading.left + 0.99)) + " s left";
         std::fprintf(stderr, "\r[%s] %3.0f %%  %.*s%s\033[K", bar.c_str(), 100 * reading.fraction,
-                     static_cast<int>(reading.stage.size()), reading.stage.data(), left.c_str());
+                     static_cast<int>(reading.phase.size()), reading.phase.data(), left.c_str());
         std::fflush(stderr);
     }
 };
@@ -87,19 +98,19 @@ protected:
         char left[32] = "null";
         if (reading.left >= 0) std::snprintf(left, sizeof left, "%.2f", reading.left);
         std::printf(
-            "{\"event\":\"progress\",\"stage\":%s,\"stage_fraction\":%.4f,\"fraction\":%.4f,\"elapsed_s\":%.2f,"
+            "{\"event\":\"progress\",\"phase\":%s,\"phase_fraction\":%.4f,\"fraction\":%.4f,\"elapsed_s\":%.2f,"
             "\"left_s\":%s}\n",
-            json_string(reading.stage).c_str(), reading.stage_fraction, reading.fraction, reading.elapsed, left);
+            json_string(reading.phase).c_str(), reading.phase_fraction, reading.fraction, reading.elapsed, left);
         std::fflush(stdout);
     }
 };
 
 }  // namespace
 
-std::unique_ptr<Progress> make_progress_display(const std::string& mode, const std::vector<PlannedStage>& stages) {
-    if (mode == "json") return std::make_unique<JsonLines>(stages);
-    if (mode == "auto" && isatty(STDERR_FILENO)) return std::make_unique<Bar>(stages);
-    return std::make_unique<Progress>();
+std::unique_ptr<BakeProgress> make_progress_display(const std::string& mode, const std::vector<PlannedPhase>& phases) {
+    if (mode == "json") return std::make_unique<JsonLines>(phases);
+    if (mode == "auto" && isatty(STDERR_FILENO)) return std::make_unique<Bar>(phases);
+    return std::make_unique<BakeProgress>();
 }
 
 std::string json_string(std::string_view text) {

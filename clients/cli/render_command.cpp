@@ -6,8 +6,8 @@
 #include "clients/cli/progress_display.h"
 #include "clients/cli/signal_watch.h"
 #include "core/render.h"
-#include "core/request_json.h"
-#include "core/request_presets.h"
+#include "core/request/request_json.h"
+#include "core/request/request_presets.h"
 
 namespace hairbake {
 namespace {
@@ -86,10 +86,10 @@ void run(const RenderOptions& options) {
     const std::optional<double> exposure = parse_exposure(options.exposure);
     RenderedPicture picture;
     {
-        std::vector<PlannedStage> stages;
-        if (!request.result) stages = {{"read_hair", 1}, {"transmittance", 5}, {"irradiance", 1}};
-        stages.insert(stages.end(), {{"reference", 1}, {"read_environment", 1}, {"render", 20}});
-        const auto progress = make_progress_display(options.progress, stages);
+        std::vector<PlannedPhase> phases;
+        if (!request.result) phases = {{"read_hair", 1}, {"transmittance", 5}, {"irradiance", 1}};
+        phases.insert(phases.end(), {{"reference", 1}, {"read_environment", 1}, {"render", 20}});
+        const auto progress = make_progress_display(options.progress, phases);
         const SignalWatch watch(*progress, [] {});
         picture = render(request, options.threads, *progress);
     }

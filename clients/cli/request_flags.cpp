@@ -4,8 +4,8 @@
 #include <fstream>
 
 #include "clients/cli/messages.h"
-#include "core/request_json.h"
-#include "core/request_presets.h"
+#include "core/request/request_json.h"
+#include "core/request/request_presets.h"
 
 namespace hairbake {
 namespace {

@@ -4,7 +4,7 @@
 #include "clients/cli/commands.h"
 #include "clients/cli/progress_display.h"
 #include "clients/cli/signal_watch.h"
-#include "core/sample.h"
+#include "core/sample/sample.h"
 
 namespace hairbake {
 

@@ -78,7 +78,8 @@ EnvironmentMap read_one_picture(const std::filesystem::path& file, const std::st
     if (requested == "faces")
         fail(file, "this is one picture; layout faces takes a folder with six, or a pattern with {face}");
     const auto check = [&](int width, int height) { return fault_of_size(requested, width, height); };
-    ImageFile image = read_image_file(file, check, {0, 0.9}, progress);
+    ProgressPart reading = progress.part(0, 0.9);
+    ImageFile image = read_image_file(file, check, reading);
     check_openexr_cube(file, requested, image);
     EnvironmentMap map;
     take_facts(image, map, progress);
@@ -108,7 +109,8 @@ EnvironmentMap read_faces(const EnvironmentFiles& files, const std::string& requ
             return "the size is " + size_text(width, height) + " pixels; that of " + files.files[0].string() + " is " +
                    size_text(size, size);
         };
-        ImageFile image = read_image_file(file, check, {0.15 * face, 0.15 * (face + 1)}, progress);
+        ProgressPart reading = progress.part(0.15 * face, 0.15 * (face + 1));
+        ImageFile image = read_image_file(file, check, reading);
         if (face > 0 && image.primaries != map.primaries)
             fail(file, "the primaries are " + image.primaries + "; those of " + files.files[0].string() + " are " +
                            map.primaries);

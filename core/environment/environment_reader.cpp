@@ -78,7 +78,6 @@ std::string repair_warning(const RadianceRepairs& done) {
 EnvironmentMap read_environment(const std::filesystem::path& path, const EnvironmentSettings& settings,
                                 Progress& progress) {
     check_settings(settings);
-    progress.report("read_environment", 0);
     EnvironmentMap map = assemble_environment(find_environment_files(path), settings.layout, progress);
     map.latlong = settings.latlong;
     map.rotation = rotation_matrix(settings.rotation_deg);
@@ -89,7 +88,7 @@ EnvironmentMap read_environment(const std::filesystem::path& path, const Environ
     repair_radiance(map, settings.invalid_radiance, path.string(), progress);
     if (std::string warning = repair_warning(map.repairs); !warning.empty()) map.warnings.push_back(std::move(warning));
     expose(map, settings, path.string(), progress);
-    progress.report("read_environment", 1);
+    progress.report(1);
     return map;
 }
 

@@ -168,8 +168,7 @@ bool read_rows(const Source& source, const OIIO::ImageSpec& spec, int begin, int
 
 // The pixels are not touched before there is something to put there: a size that is only declared takes addresses, but
 // no memory.
-void read_pixels(const Source& source, const OIIO::ImageSpec& spec, ProgressRange range, Progress& progress,
-                 ImageFile& image) {
+void read_pixels(const Source& source, const OIIO::ImageSpec& spec, Progress& progress, ImageFile& image) {
     const std::array<int, 3> channels = choose_channels(spec, image);
     const int unit = spec.tile_height > 0 ? spec.tile_height : 16;
     const auto wanted = static_cast<int>(pixels_per_piece / spec.width);
@@ -188,14 +187,13 @@ void read_pixels(const Source& source, const OIIO::ImageSpec& spec, ProgressRang
         const float* value = rows.data();
         for (std::size_t i = 0; i < std::size_t(end - begin) * spec.width; ++i, value += spec.nchannels)
             pixel[i] = {value[channels[0]], value[channels[1]], value[channels[2]]};
-        progress.report("read_environment", range.begin + (range.end - range.begin) * end / spec.height);
+        progress.report(double(end) / spec.height);
     }
 }
 
 }  // namespace
 
-ImageFile read_image_file(const std::filesystem::path& file, const SizeCheck& check, ProgressRange range,
-                          Progress& progress) try {
+ImageFile read_image_file(const std::filesystem::path& file, const SizeCheck& check, Progress& progress) try {
     Source source{file, nullptr};
     if (!std::filesystem::is_regular_file(file)) source.fail("there is no such file");
     const std::string format = sniff(source);
@@ -217,7 +215,7 @@ ImageFile read_image_file(const std::filesystem::path& file, const SizeCheck& ch
     image.openexr_cube = spec.get_string_attribute("textureformat") == "CubeFace Environment";
     image.primaries = name_primaries(spec);
     add_notes(spec, *source.input, image);
-    read_pixels(source, spec, range, progress, image);
+    read_pixels(source, spec, progress, image);
     return image;
 } catch (const std::bad_alloc&) {
     throw Error(ErrorKind::out_of_resources, file.string() + ": not enough memory for the image");

@@ -26,18 +26,12 @@ struct ImageFile {
 /// ..."), empty if nothing.
 using SizeCheck = std::function<std::string(int width, int height)>;
 
-/// The part of the stage read_environment that reading one image is.
-struct ProgressRange {
-    double begin = 0, end = 0.9;
-};
-
-/// Reads an image in pieces of about a million pixels, between which `progress` is told (stage read_environment, within
-/// `range`) and may cancel. The format is told from the file's first bytes, not its name; the declared size is given to
-/// `check` and compared with the most that a file of this length can hold before any memory is taken, and tiles too
-/// large to decode a row of them are refused. `check` bounds the memory. Channels R, G, B are found by name (in any
-/// layer), otherwise the first three are taken; one channel is grey. Throws Error(bad_input) with file, place, what was
-/// found and what is allowed; Error(out_of_resources); Error(cancelled).
-ImageFile read_image_file(const std::filesystem::path& file, const SizeCheck& check, ProgressRange range,
-                          Progress& progress);
+/// Reads an image in pieces of about a million pixels, between which `progress` is told and may cancel. The format is
+/// told from the file's first bytes, not its name; the declared size is given to `check` and compared with the most
+/// that a file of this length can hold before any memory is taken, and tiles too large to decode a row of them are
+/// refused. `check` bounds the memory. Channels R, G, B are found by name (in any layer), otherwise the first three are
+/// taken; one channel is grey. Throws Error(bad_input) with file, place, what was found and what is allowed;
+/// Error(out_of_resources); Error(cancelled).
+ImageFile read_image_file(const std::filesystem::path& file, const SizeCheck& check, Progress& progress);
 
 }  // namespace hairbake

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,13 +37,5 @@ struct HairModel {
 
 /// "strand 12, vertex 3" for point `i` of the model, both counted from 0, the vertex within its strand.
 std::string place_of_point(const HairModel& model, std::size_t i);
-
-/// The request's `strand` block: how the model's widths and opacities are read.
-struct StrandSettings {
-    std::optional<double> width;     ///< strand diameter in model units for every point, instead of the file's; > 0
-    double width_scale = 1;          ///< multiplies whichever width holds; > 0
-    double opacity = 1;              ///< share of light that one strand crossing stops, [0, 1]
-    bool opacity_from_file = false;  ///< take 1 - transparency of the file instead of `opacity`
-};
 
 }  // namespace hairbake

@@ -6,6 +6,7 @@
 
 #include "core/base/vec.h"
 #include "core/hair/hair_model.h"
+#include "core/hair/strand_settings.h"
 
 namespace hairbake {
 

@@ -77,7 +77,7 @@ void bake_exact_maps(const LightSet& lights, const IrradianceSettings& settings,
         const Vec3d here = largest_bound(sums, added_sums, table.rows(), 1 + count);
         for (int channel = 0; channel < 3; ++channel) bound[channel] = std::max(bound[channel], here[channel]);
         const int pairs_done = face / 2 + 1;
-        progress.report("irradiance", 0.2 + 0.2 * pairs_done);
+        progress.report(0.2 + 0.2 * pairs_done);
     }
     maps.interpolation_bound = n >= 16 ? bound
                                        : interpolation_bound(with_directional_lights(lights, settings.lights),
@@ -186,9 +186,8 @@ IrradianceMaps bake_irradiance(const EnvironmentMap& environment, const Irradian
     maps.exponent = settings.exponent;
     maps.specular_statistics.resize(settings.specular_maps);
 
-    progress.report("irradiance", 0);
     const LightSet lights = make_light_set(environment, exact ? light_resolution(settings.exponent) : 32, progress);
-    progress.report("irradiance", 0.2);
+    progress.report(0.2);
     if (exact) {
         bake_exact_maps(lights, settings, progress, maps);
         maps.environment_sh_bands = reported_bands;
@@ -202,7 +201,7 @@ IrradianceMaps bake_irradiance(const EnvironmentMap& environment, const Irradian
     add_directional_lights(settings.lights, progress, maps);
     measure_all(maps);
     add_warnings(settings, maps);
-    progress.report("irradiance", 1);
+    progress.report(1);
     return maps;
 }
 

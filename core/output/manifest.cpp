@@ -11,8 +11,8 @@
 #include "core/base/json_nesting.h"
 #include "core/output/map_metadata.h"
 #include "core/output/versions.h"
-#include "core/request_json.h"
-#include "core/request_keys.h"
+#include "core/request/request_json.h"
+#include "core/request/request_keys.h"
 
 namespace hairbake {
 namespace {

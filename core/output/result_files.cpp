@@ -72,7 +72,7 @@ std::vector<WrittenFile> write_files(BakeResult& result, const std::filesystem::
     std::vector<WrittenFile> files;
     const auto step = [&](double fraction) {
         progress.check();
-        progress.report("write", fraction);
+        progress.report(fraction);
     };
     if (result.transmittance) append(files, write_transmittance(result, folder, progress));
     step(0.2);

@@ -5,10 +5,10 @@
 #include <numeric>
 #include <vector>
 
-#include "core/base/direction_set.h"
 #include "core/base/random.h"
 #include "core/reference/nearest_strand.h"
 #include "core/reference/tracer.h"
+#include "core/visibility/direction_set.h"
 
 namespace hairbake {
 namespace {

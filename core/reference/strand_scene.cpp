@@ -15,7 +15,7 @@ namespace {
 /// Embree asks this during a build; false makes it stop.
 bool go_on(void* progress, double fraction) {
     auto& told = *static_cast<Progress*>(progress);
-    told.report("reference", 0.5 * fraction);
+    told.report(fraction);
     return !told.cancelled();
 }
 

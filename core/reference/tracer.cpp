@@ -8,11 +8,11 @@
 #include <limits>
 #include <utility>
 
-#include "core/base/hemisphere_means.h"
 #include "core/base/parallel.h"
 #include "core/mesh/grounding.h"
 #include "core/reference/crossings.h"
 #include "core/reference/own_strand.h"
+#include "core/visibility/hemisphere_means.h"
 
 namespace hairbake {
 namespace {
@@ -185,7 +185,7 @@ void trace_all(const StrandScene& scene, std::vector<RayOrigin> origins, bool oc
         progress.check();
         trace_packet({scene, opaque, occluded}, std::span<const RayOrigin>(origins).subspan(begin, end - begin),
                      directions, [&](std::size_t i, std::size_t k, double t) { visit(begin + i, k, t); });
-        progress.report("reference", 0.5 + 0.5 * double(done += end - begin) / double(origins.size()));
+        progress.report(double(done += end - begin) / double(origins.size()));
     });
 }
 

@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "core/base/direction_moments.h"
 #include "core/base/progress.h"
 #include "core/base/vec.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/reference/strand_scene.h"
+#include "core/visibility/direction_moments.h"
 
 namespace hairbake {
 

@@ -130,7 +130,7 @@ std::vector<Vec3f> render_frame(const RenderScene& scene, const Camera& camera, 
         Tile tile(scene, camera, settings, static_cast<int>(k % columns) * tile_side,
                   static_cast<int>(k / columns) * tile_side);
         tile.render(progress, picture);
-        progress.report("render", double(++done) / double(tiles));
+        progress.report(double(++done) / double(tiles));
     });
     return picture;
 }

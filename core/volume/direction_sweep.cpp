@@ -137,7 +137,7 @@ void ItemSums::add(std::span<const std::uint32_t> item_of_slot, std::span<const 
 }
 
 DirectionSums sweep_directions(const GridFrame& frame, const SortedStrands& sorted, const ExtinctionBricks& bricks,
-                               const SweepRequest& request, Progress& progress, double from, double to) {
+                               const SweepRequest& request, Progress& progress) {
     const std::size_t count = request.directions.size();
     const float scale = sweep_scale(static_cast<int>(count));
     const std::size_t points = request.receiver ? request.receiver->positions.size() : 0;
@@ -149,8 +149,7 @@ DirectionSums sweep_directions(const GridFrame& frame, const SortedStrands& sort
         if (groups.empty()) continue;
         const Axis axis(make_slice_layout(frame, sorted, bricks, a, progress), frame, sorted, request);
         const auto swept = [&](std::size_t n) {
-            progress.report("transmittance",
-                            from + (to - from) * static_cast<double>(done += n) / static_cast<double>(count));
+            progress.report(static_cast<double>(done += n) / static_cast<double>(count));
         };
         sweep_axis(axis, request.moments.count(), groups, progress, swept, sums);
     }

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "core/base/direction_moments.h"
 #include "core/base/progress.h"
 #include "core/mesh/triangle_mesh.h"
+#include "core/visibility/direction_moments.h"
 #include "core/volume/extinction_bricks.h"
 #include "core/volume/grid_frame.h"
 #include "core/volume/point_shadow.h"
@@ -54,9 +54,9 @@ struct SweepRequest {
     const PointShadow *vertex_shadow = nullptr, *receiver_shadow = nullptr;
 };
 
-/// Sweeps `bricks` in every direction. Progress goes from `from` to `to`. Throws Error(out_of_resources),
+/// Sweeps `bricks` in every direction. Throws Error(out_of_resources),
 /// Error(cancelled).
 DirectionSums sweep_directions(const GridFrame& frame, const SortedStrands& sorted, const ExtinctionBricks& bricks,
-                               const SweepRequest& request, Progress& progress, double from, double to);
+                               const SweepRequest& request, Progress& progress);
 
 }  // namespace hairbake

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "core/base/hemisphere_means.h"
 #include "core/base/parallel.h"
+#include "core/visibility/hemisphere_means.h"
 
 namespace hairbake {
 namespace {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/base/direction_moments.h"
+#include "core/visibility/direction_moments.h"
 #include "core/volume/direction_sweep.h"
 #include "core/volume/near_field.h"
 

@@ -4,10 +4,11 @@
 #include <cmath>
 #include <string>
 
-#include "core/base/direction_moments.h"
 #include "core/base/error.h"
-#include "core/base/hemisphere_means.h"
 #include "core/base/parallel.h"
+#include "core/visibility/direction_moments.h"
+#include "core/visibility/direction_set.h"
+#include "core/visibility/hemisphere_means.h"
 #include "core/volume/grid_frame.h"
 #include "core/volume/opacity_map.h"
 #include "core/volume/opacity_view.h"
@@ -152,7 +153,7 @@ Transmittance bake_transmittance_opacity_maps(const TransmittanceScene& scene, c
             sums.add(first + k, slots[k]);
             bounded_by_width = bounded_by_width || slots[k].view.texel_size == least;
         }
-        progress.report("transmittance", static_cast<double>(first + count) / static_cast<double>(directions.size()));
+        progress.report(static_cast<double>(first + count) / static_cast<double>(directions.size()));
     }
     if (bounded_by_width)
         result.warnings.push_back(

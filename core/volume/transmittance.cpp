@@ -5,8 +5,9 @@
 #include <span>
 #include <string>
 
-#include "core/base/direction_moments.h"
-#include "core/base/hemisphere_means.h"
+#include "core/visibility/direction_moments.h"
+#include "core/visibility/direction_set.h"
+#include "core/visibility/hemisphere_means.h"
 #include "core/volume/density_grid.h"
 #include "core/volume/direction_sweep.h"
 #include "core/volume/directional_answers.h"
@@ -78,9 +79,9 @@ Transmittance bake_transmittance_volume(const TransmittanceScene& scene, const T
             std::to_string(frame.voxel_size) + " model units");
 
     const SortedStrands sorted = sort_strands(strands, frame, progress);
-    progress.report("transmittance", 0.2);
+    progress.report(0.2);
     const ExtinctionBricks bricks = deposit_strands(sorted, progress);
-    progress.report("transmittance", 0.3);
+    progress.report(0.3);
     result.density = std::make_shared<const DensityGrid>(frame, sorted, bricks);
     result.occupied_voxels = result.density->occupied_voxels();
 
@@ -92,7 +93,8 @@ Transmittance bake_transmittance_volume(const TransmittanceScene& scene, const T
                               progress);
     request.vertex_shadow = vertex_shadow ? &*vertex_shadow : nullptr;
     request.receiver_shadow = receiver_shadow ? &*receiver_shadow : nullptr;
-    const DirectionSums sums = sweep_directions(frame, sorted, bricks, request, progress, 0.3, 0.7);
+    ProgressPart sweeping = progress.part(0.3, 0.7);
+    const DirectionSums sums = sweep_directions(frame, sorted, bricks, request, sweeping);
     auto average =
         correct_near_field(strands, frame, sorted, bricks, angular_means(sums.vertices, directions.size()), progress);
     DirectionalMeans answers = directional_answers(sums.vertices, sorted.vertices, std::move(average),
@@ -101,7 +103,7 @@ Transmittance bake_transmittance_volume(const TransmittanceScene& scene, const T
     result.sh = std::move(answers.sh);
     result.bent_cone = std::move(answers.bent_cone);
     if (scene.receiver) result.receiver = answer_receiver(sums.receivers, result.warnings);
-    progress.report("transmittance", 1);
+    progress.report(1);
     return result;
 }
 

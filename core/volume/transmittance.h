@@ -3,45 +3,17 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "core/base/direction_set.h"
 #include "core/base/progress.h"
 #include "core/hair/strand_geometry.h"
 #include "core/mesh/triangle_mesh.h"
+#include "core/visibility/transmittance_settings.h"
 
 namespace hairbake {
 
 class DensityGrid;
-
-enum class TransmittanceMethod {
-    volume,        ///< mean field: density grid, sheared sweep, near-field correction
-    opacity_maps,  ///< layered deep opacity maps, the published estimator, kept for comparison
-    trace          ///< Embree, every vertex against the true strands: slow, the truth
-};
-
-/// Of the method opacity_maps (spec, section 3b).
-struct OpacityMapSettings {
-    int layers = 3;            ///< 1 to 16
-    double layer_spacing = 2;  ///< each layer is this many times as thick as the one before, 1 to 16
-    int resolution = 512;      ///< texels on the longer edge of a map, 16 to 4096
-};
-
-/// The request's `transmittance` block.
-struct TransmittanceSettings {
-    TransmittanceMethod method = TransmittanceMethod::volume;
-    int directions = 100;  ///< 1 to 4096
-    DirectionSet direction_set = DirectionSet::fibonacci;
-    std::uint64_t seed = 1;            ///< of the stratified and random sets
-    int voxels = 256;                  ///< on the longest axis of the bounds, 32 to 1024
-    std::optional<double> voxel_size;  ///< model units, instead of `voxels`; > 0
-    int sh_bands = 0;                  ///< bands of directional transmittance, 1 to 4; 0 for none
-    bool bent_cone = false;            ///< also bake bent cones
-    OpacityMapSettings opacity_maps;
-    int reference_vertices = 256;  ///< traced for the error bar, 0 to 100000
-};
 
 /// What the transmittance stage reads. Refers to its parts, which must outlive it.
 struct TransmittanceScene {

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/request_presets.h"
+#include "core/request/request_presets.h"
 #include "server/http/embedded.h"
 
 namespace hairbake {

@@ -1,7 +1,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "core/request_keys.h"
+#include "core/request/request_keys.h"
 #include "server/http/openapi.h"
 #include "server/http/problem.h"
 #include "server/http/replies.h"

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
-#include "core/request_json.h"
+#include "core/request/request_json.h"
 #include "server/jobs/names.h"
 #include "server/store/blob_store.h"
 #include "server/store/refusal.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "core/base/digest.h"
-#include "core/request_json.h"
-#include "core/request_keys.h"
+#include "core/request/request_json.h"
+#include "core/request/request_keys.h"
 
 namespace hairbake {
 namespace {

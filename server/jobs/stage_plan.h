@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/request.h"
+#include "core/request/request.h"
 
 namespace hairbake {
 

@@ -25,13 +25,21 @@ using Json = nlohmann::ordered_json;
 void say(const Json& line) { std::cout << line.dump(-1, ' ', false, Json::error_handler_t::replace) << std::endl; }
 
 /// Progress as lines, at most twenty a second.
-class LineProgress : public hairbake::Progress {
+class LineProgress : public hairbake::BakeProgress {
 public:
-    void report(std::string_view phase, double fraction) override {
+    void enter(std::string_view phase) override {
+        {
+            const std::lock_guard lock(mutex_);
+            phase_ = phase;
+            said_ = {};
+        }
+        report(0);
+    }
+
+    void report(double fraction) override {
         const std::lock_guard lock(mutex_);
         const auto time = std::chrono::steady_clock::now();
-        if (phase == phase_ && fraction < 1 && time - said_ < std::chrono::milliseconds(50)) return;
-        phase_ = phase;
+        if (fraction < 1 && time - said_ < std::chrono::milliseconds(50)) return;
         said_ = time;
         say({{"phase", phase_}, {"fraction", fraction}});
     }
@@ -81,7 +89,7 @@ int fail(const Error& error, const std::string& task) {
     return 1;
 }
 
-int work(hairbake::Progress& progress) {
+int work(hairbake::BakeProgress& progress) {
     const std::string task{std::istreambuf_iterator<char>(std::cin), {}};
     try {
         const std::string done = hairbake::run_task(task, progress);

@@ -5,8 +5,8 @@
 
 #include "core/bake.h"
 #include "core/base/parallel.h"
-#include "core/inspect.h"
-#include "core/request_json.h"
+#include "core/request/request_json.h"
+#include "core/tools/inspect.h"
 #include "server/worker/thumbnail.h"
 
 namespace hairbake {
@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-void bake_stage(const Json& task, Progress& progress) {
+void bake_stage(const Json& task, BakeProgress& progress) {
     BakeRequest request;
     merge_json(request, task.at("request").dump(), "the stage's request");
     BakeResult result = bake(request, task.at("threads").get<int>(), progress);
@@ -40,7 +40,7 @@ Json inspect_input(const Json& task, Progress& progress) {
 
 }  // namespace
 
-std::string run_task(const std::string& text, Progress& progress) {
+std::string run_task(const std::string& text, BakeProgress& progress) {
     const Json task = Json::parse(text);
     if (task.at("task") == "bake") {
         bake_stage(task, progress);

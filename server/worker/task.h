@@ -19,7 +19,7 @@
 namespace hairbake {
 
 /// Does what the task `text` (JSON) says; returns the object of "done". Throws Error.
-std::string run_task(const std::string& text, Progress& progress);
+std::string run_task(const std::string& text, BakeProgress& progress);
 
 /// `message` with the paths of the `names` of the task `text` replaced.
 std::string with_names(std::string message, const std::string& text);

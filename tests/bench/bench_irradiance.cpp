@@ -23,8 +23,8 @@
 #include "core/environment/environment_writer.h"
 #include "core/environment/light_set.h"
 #include "core/environment/sh_projection.h"
-#include "core/environment/sky_generator.h"
 #include "core/irradiance/irradiance_maps.h"
+#include "core/sample/sky_generator.h"
 #include "tests/support/pixel_sum.h"
 #include "tests/support/shared_data.h"
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "core/base/progress.h"
-#include "core/hair/groom_generator.h"
+#include "core/sample/groom_generator.h"
 #include "core/volume/density_grid.h"
 #include "core/volume/near_field.h"
 #include "core/volume/slice_layout.h"

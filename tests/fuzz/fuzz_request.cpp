@@ -3,8 +3,8 @@
 #include <string_view>
 
 #include "core/base/error.h"
-#include "core/request_json.h"
-#include "core/request_keys.h"
+#include "core/request/request_json.h"
+#include "core/request/request_keys.h"
 #include "tests/fuzz/demand.h"
 
 namespace {

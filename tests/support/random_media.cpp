@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/base/direction_set.h"
+#include "core/visibility/direction_set.h"
 #include "tests/support/analytic_media.h"
 
 namespace hairbake::test_support {

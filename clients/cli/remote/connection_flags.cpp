@@ -81,9 +81,9 @@ ServerOptions server_options(const ConnectionFlags& flags) {
     return options;
 }
 
-void run_phase(const ConnectionFlags& flags, const ServerOptions& options, const std::vector<PlannedStage>& stages,
+void run_phase(const ConnectionFlags& flags, const ServerOptions& options, const std::vector<PlannedPhase>& phases,
                const std::function<void(Server&)>& work) {
-    const auto progress = make_progress_display(flags.progress, stages);
+    const auto progress = make_progress_display(flags.progress, phases);
     const SignalWatch watch(*progress, [] {});
     Server server(options, *progress);
     try {

@@ -80,6 +80,7 @@ public:
         const std::vector<ListedFile> files = listed_files(manifest);
         for (const ListedFile& file : files) result_.bytes += file.bytes;
         check_room();
+        server_.progress().enter("fetch");
         for (const ListedFile& file : files) {
             fetch_file(file);
             done_ += file.bytes;
@@ -115,7 +116,7 @@ private:
     void report(std::uint64_t here) {
         server_.progress().check();
         const double total = static_cast<double>(result_.bytes);
-        server_.progress().report("fetch", total > 0 ? static_cast<double>(done_ + here) / total : 1);
+        server_.progress().report(total > 0 ? static_cast<double>(done_ + here) / total : 1);
     }
 
     void fetch_file(const ListedFile& file) {

@@ -72,7 +72,7 @@ std::string plain(const std::string& text) {
     return result;
 }
 
-Server::Server(const ServerOptions& options, Progress& progress)
+Server::Server(const ServerOptions& options, BakeProgress& progress)
     : options_(options), progress_(progress), http_(options.url, options.token, options.ca_file) {}
 
 HttpAnswer Server::once(const HttpCall& call) {

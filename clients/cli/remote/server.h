@@ -42,7 +42,7 @@ class Server {
 public:
     using Json = nlohmann::ordered_json;
 
-    Server(const ServerOptions& options, Progress& progress);
+    Server(const ServerOptions& options, BakeProgress& progress);
 
     /// One attempt. Throws as HttpClient::send; a server that is busy or has nothing behind its proxy (429, 502, 503,
     /// 504) is ConnectionLost too.
@@ -52,13 +52,13 @@ public:
     /// JSON there and back; throws RemoteError(refused) unless the status is 2xx.
     Json json(const std::string& method, const std::string& path, const std::string& body = {});
 
-    Progress& progress() { return progress_; }
+    BakeProgress& progress() { return progress_; }
     Patience patience() { return {options_.patience_s, progress_}; }
     const std::string& url() const { return options_.url; }
 
 private:
     ServerOptions options_;
-    Progress& progress_;
+    BakeProgress& progress_;
     HttpClient http_;
 };
 

@@ -10,7 +10,7 @@
 #include "clients/cli/remote/upload.h"
 #include "clients/cli/request_flags.h"
 #include "core/bake.h"
-#include "core/request_json.h"
+#include "core/request/request_json.h"
 
 namespace hairbake {
 namespace {

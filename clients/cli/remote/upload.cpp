@@ -176,26 +176,28 @@ void InputFiles::add(const BakeRequest& request) {
 void InputFiles::send(Server& server) {
     double total = 0, done = 0;
     for (const auto& [path, file] : files_) total += static_cast<double>(file.bytes);
-    const auto report = [&](const char* stage, double bytes) {
+    const auto report = [&](double bytes) {
         server.progress().check();
-        server.progress().report(stage, total > 0 ? std::min(1.0, bytes / total) : 1);
+        server.progress().report(total > 0 ? std::min(1.0, bytes / total) : 1);
     };
+    server.progress().enter("digest");
     for (auto& [path, file] : files_) {
-        report("digest", done);
+        report(done);
         file.digest = digest_of_file(path);
         done += static_cast<double>(file.bytes);
     }
-    report("digest", done);
+    report(done);
     done = 0;
+    server.progress().enter("upload");
     std::set<std::string> there;
     for (const auto& [path, file] : files_) {
         if (there.insert(file.digest).second && !is_stored(server, file.digest)) {
             sent_bytes_ += send_file(server, path, file.digest, file.bytes,
-                                     [&](std::uint64_t bytes) { report("upload", done + static_cast<double>(bytes)); });
+                                     [&](std::uint64_t bytes) { report(done + static_cast<double>(bytes)); });
             ++sent_files_;
         }
         done += static_cast<double>(file.bytes);
-        report("upload", done);
+        report(done);
     }
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "clients/cli/remote/server.h"
-#include "core/request.h"
+#include "core/request/request.h"
 
 namespace hairbake {
 

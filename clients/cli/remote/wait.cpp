@@ -77,6 +77,7 @@ std::vector<EndedBake> wait_for_bakes(Server& server, const std::vector<std::str
     std::vector<Poll> polls;
     polls.reserve(ids.size());
     for (const std::string& id : ids) polls.emplace_back(server, "/v1/bakes/" + id);
+    server.progress().enter("bake");
     for (Rhythm rhythm(server.progress());; rhythm.pause_now()) {
         double fraction = 0;
         std::size_t ready = 0;
@@ -90,19 +91,20 @@ std::vector<EndedBake> wait_for_bakes(Server& server, const std::vector<std::str
             }
             if (!all[i].id.empty()) ++ready;
         }
-        server.progress().report("bake", (fraction + static_cast<double>(ready)) / static_cast<double>(ids.size()));
+        server.progress().report((fraction + static_cast<double>(ready)) / static_cast<double>(ids.size()));
         if (ready == ids.size()) return all;
     }
 }
 
 std::vector<EndedBake> wait_for_batch(Server& server, const std::string& batch) {
     Poll poll(server, "/v1/batches/" + batch);
+    server.progress().enter("bake");
     for (Rhythm rhythm(server.progress());; rhythm.pause_now()) {
         const Json& view = poll.look();
         const auto total = view.at("bakes").get<double>();
         const Json& states = view.at("states");
         const double live = states.at("queued").get<double>() + states.at("running").get<double>();
-        server.progress().report("bake", total > 0 ? std::clamp(1 - live / total, 0.0, 1.0) : 1);
+        server.progress().report(total > 0 ? std::clamp(1 - live / total, 0.0, 1.0) : 1);
         if (live <= 0) break;
     }
     std::vector<EndedBake> all;

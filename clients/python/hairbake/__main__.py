@@ -28,7 +28,7 @@ class Display:
 
     def __call__(self, stage: str, fraction: float) -> None:
         if self.json:
-            self.event("progress", stage=stage, stage_fraction=round(fraction, 4))
+            self.event("progress", phase=stage, phase_fraction=round(fraction, 4))
         elif self.bar:
             filled = round(32 * min(1.0, fraction))
             bar = "#" * filled + "." * (32 - filled)

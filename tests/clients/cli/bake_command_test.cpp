@@ -192,19 +192,19 @@ TEST(BakeCommand, ProgressJsonIsOneObjectALineFromNothingToDone) {
     std::istringstream lines(run.output);
     double fraction = 0;
     nlohmann::json last;
-    std::set<std::string> stages;
+    std::set<std::string> phases;
     for (std::string line; std::getline(lines, line);) {
         last = nlohmann::json::parse(line);
         if (last["event"] != "progress") break;
         EXPECT_GE(last["fraction"], fraction);
         EXPECT_LE(last["fraction"], 1);
         fraction = last["fraction"];
-        stages.insert(last["stage"].get<std::string>());
+        phases.insert(last["phase"].get<std::string>());
     }
     EXPECT_EQ(last["event"], "done");
     EXPECT_EQ(last["folder"], workshop.path("out"));
     EXPECT_EQ(fraction, 1);
-    EXPECT_EQ(stages, (std::set<std::string>{"read_hair", "transmittance", "reference", "read_environment",
+    EXPECT_EQ(phases, (std::set<std::string>{"read_hair", "transmittance", "reference", "read_environment",
                                              "irradiance", "write"}));
 }
 

@@ -34,7 +34,7 @@ TEST(RenderCommand, BakesInMemoryAndTellsItsProgress) {
     const Finished run = hairbake("render" + workshop.hair() + workshop.env() + " --out " + workshop.path("a.exr") +
                                   " --size 24x24 --samples 1 --set transmittance.voxels=32 --progress json");
     EXPECT_EQ(run.exit_code, 0);
-    EXPECT_TRUE(contains(run.output, "\"stage\":\"render\"")) << run.output;
+    EXPECT_TRUE(contains(run.output, "\"phase\":\"render\"")) << run.output;
     EXPECT_TRUE(contains(run.output, "\"event\":\"done\""));
 }
 

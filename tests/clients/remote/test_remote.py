@@ -101,7 +101,7 @@ class Jobs:
         events = done.events
         self.assertEqual({event["event"] for event in events}, {"progress", "submitted", "done"})
         self.assertEqual((events[-1]["event"], events[-1]["folder"]), ("done", "out"))
-        self.assertLessEqual({"upload", "bake", "fetch"}, {event.get("stage") for event in events})
+        self.assertLessEqual({"upload", "bake", "fetch"}, {event.get("phase") for event in events})
         failed = self.run_failing(7, "status", "0" * 64, "--progress", "json", url=daemon.url)
         self.assertEqual((failed.events[-1]["event"], failed.events[-1]["kind"]), ("error", "refused"))
 

@@ -12,7 +12,7 @@
 #include "core/base/digest.h"
 #include "core/base/error.h"
 #include "core/hair/hair_file.h"
-#include "tests/core/bake/small_inputs.h"
+#include "tests/support/small_inputs.h"
 #include "tests/support/tfx_bytes.h"
 
 namespace hairbake {
@@ -38,7 +38,7 @@ std::map<std::string, std::string> contents(const fs::path& folder) {
 }
 
 void bake_to(const BakeRequest& request, const fs::path& folder, int threads = 2) {
-    Progress progress;
+    BakeProgress progress;
     BakeResult result = bake(request, threads, progress);
     write_result(result, folder, progress);
 }
@@ -63,7 +63,7 @@ TEST(Bake, AnOccluderDarkensTheHairAndTheManifestTellsWhatItIs) {
     const SmallInputs inputs;
     BakeRequest request = inputs.request();
     request.environment.reset();
-    Progress progress;
+    BakeProgress progress;
     BakeResult bare = bake(request, 2, progress);
     request.occluder = (inputs.folder / "samples" / "head.obj").string();
     for (const auto method : {TransmittanceMethod::volume, TransmittanceMethod::trace}) {
@@ -141,7 +141,7 @@ TEST(Bake, TakesTheMethodOfOpacityMaps) {
     request.environment.reset();
     request.transmittance.method = TransmittanceMethod::opacity_maps;
     request.transmittance.opacity_maps.resolution = 64;
-    Progress progress;
+    BakeProgress progress;
     const BakeResult maps = bake(request, 2, progress);
     EXPECT_EQ(maps.transmittance->average.size(), 3000u);
     EXPECT_TRUE(maps.error_bar.has_value());
@@ -189,7 +189,7 @@ TEST(Bake, WhatIsWrongWithTheHairsNumbersBeginsWithItsFile) {
     BakeRequest request = inputs.request();
     const auto refusal = [&](const HairModel& model) {
         write_hair(model, *request.hair);
-        Progress progress;
+        BakeProgress progress;
         try {
             bake(request, 2, progress);
         } catch (const Error& error) {
@@ -217,7 +217,7 @@ TEST(Bake, StagesDoNotKnowOfEachOther) {
     BakeRequest both = inputs.request(), hair = inputs.request(), environment = inputs.request();
     hair.environment.reset();
     environment.hair.reset();
-    Progress progress;
+    BakeProgress progress;
     const BakeResult b = bake(both, 2, progress), h = bake(hair, 2, progress), e = bake(environment, 2, progress);
     EXPECT_EQ(b.transmittance_key, h.transmittance_key);
     EXPECT_EQ(b.irradiance_key, e.irradiance_key);
@@ -244,7 +244,7 @@ TEST(Bake, ManifestListsEveryFileWithItsDigestAndSize) {
 
 TEST(Bake, EveryStageThatRanHasATime) {
     const SmallInputs inputs;
-    Progress progress;
+    BakeProgress progress;
     BakeResult result = bake(inputs.request(), 2, progress);
     write_result(result, inputs.folder / "out", progress);
     ASSERT_EQ(result.measured.timings_s.size(), 6u);
@@ -259,7 +259,7 @@ TEST(Bake, TraceGivesWhatTheErrorBarTracesWithTheSameDirections) {
     request.environment.reset();
     request.transmittance.method = TransmittanceMethod::trace;
     request.transmittance.directions = 1024;  // as the error bar, Fibonacci as well
-    Progress progress;
+    BakeProgress progress;
     const BakeResult result = bake(request, 2, progress);
     ASSERT_TRUE(result.error_bar.has_value());
     EXPECT_EQ(result.error_bar->rmse, 0);
@@ -278,7 +278,7 @@ TEST(Bake, EveryMethodAnswersHarmonicsConesAndTheReceiver) {
     double mean[2] = {0, 0};
     for (const int trace : {0, 1}) {
         request.transmittance.method = trace ? TransmittanceMethod::trace : TransmittanceMethod::volume;
-        Progress progress;
+        BakeProgress progress;
         const BakeResult result = bake(request, 2, progress);
         const std::size_t vertices = result.transmittance->average.size();
         EXPECT_EQ(result.transmittance->sh.size(), 4 * vertices);
@@ -299,60 +299,75 @@ TEST(Bake, WithoutReferenceVerticesThereIsNoErrorBarAndNoTimeForIt) {
     const SmallInputs inputs;
     BakeRequest request = inputs.request();
     request.transmittance.reference_vertices = 0;
-    Progress progress;
+    BakeProgress progress;
     const BakeResult result = bake(request, 2, progress);
     EXPECT_FALSE(result.error_bar.has_value());
     EXPECT_EQ(result.measured.timings_s.at("reference"), 0);
 }
 
-/// Cancels itself at the first report of a stage.
-class CancelAt : public Progress {
+/// Cancels itself when a phase begins.
+class CancelAt : public BakeProgress {
 public:
-    explicit CancelAt(std::string stage) : stage_(std::move(stage)) {}
-    void report(std::string_view stage, double) override {
-        if (stage == stage_) cancel();
+    explicit CancelAt(std::string phase) : phase_(std::move(phase)) {}
+    void enter(std::string_view phase) override {
+        if (phase == phase_) cancel();
     }
 
 private:
-    std::string stage_;
+    std::string phase_;
 };
 
-TEST(Bake, CancelledInAnyStageLeavesNothing) {
+TEST(Bake, CancelledInAnyPhaseLeavesNothing) {
     const SmallInputs inputs;
-    for (const char* stage : {"read_hair", "transmittance", "reference", "read_environment", "irradiance", "write"}) {
-        CancelAt progress(stage);
+    for (const char* phase : {"read_hair", "transmittance", "reference", "read_environment", "irradiance", "write"}) {
+        CancelAt progress(phase);
         try {
             BakeResult result = bake(inputs.request(), 2, progress);
             write_result(result, inputs.folder / "out", progress);
-            ADD_FAILURE() << stage << " went on";
+            ADD_FAILURE() << phase << " went on";
         } catch (const Error& error) {
-            EXPECT_EQ(error.kind(), ErrorKind::cancelled) << stage;
+            EXPECT_EQ(error.kind(), ErrorKind::cancelled) << phase;
         }
         std::size_t entries = 0;
         for ([[maybe_unused]] const auto& entry : fs::directory_iterator(inputs.folder / "")) ++entries;
-        EXPECT_EQ(entries, 1u) << "only the samples are there after " << stage;
+        EXPECT_EQ(entries, 1u) << "only the samples are there after " << phase;
     }
 }
 
-TEST(Bake, ReportsStagesInOrderWithFractionsFromZeroToOne) {
-    class Recorder : public Progress {
-    public:
-        void report(std::string_view stage, double fraction) override {
-            const std::lock_guard lock(mutex_);
-            if (stages.empty() || stages.back() != stage) stages.emplace_back(stage);
-            EXPECT_GE(fraction, 0);
-            EXPECT_LE(fraction, 1);
-        }
-        std::vector<std::string> stages;
+/// Records the phases, and checks that no report of a phase runs back.
+class Recorder : public BakeProgress {
+public:
+    void enter(std::string_view phase) override {
+        const std::lock_guard lock(mutex_);
+        phases.emplace_back(phase);
+        largest_ = 0;
+    }
+    void report(double fraction) override {
+        const std::lock_guard lock(mutex_);
+        EXPECT_GE(fraction, 0);
+        EXPECT_LE(fraction, 1 + 1e-9);
+        EXPECT_GE(fraction, largest_ - 0.2) << phases.back();  // threads report their own counts, a little out of order
+        largest_ = std::max(largest_, fraction);
+    }
+    std::vector<std::string> phases;
 
-    private:
-        std::mutex mutex_;
-    } progress;
+private:
+    std::mutex mutex_;
+    double largest_ = 0;
+};
+
+TEST(Bake, EntersEachPhaseOnceAndReportsItsOwnFraction) {
     const SmallInputs inputs;
-    BakeResult result = bake(inputs.request(), 2, progress);
-    write_result(result, inputs.folder / "out", progress);
-    EXPECT_EQ(progress.stages, (std::vector<std::string>{"read_hair", "transmittance", "reference", "read_environment",
-                                                         "irradiance", "write"}));
+    for (const TransmittanceMethod method :
+         {TransmittanceMethod::volume, TransmittanceMethod::trace, TransmittanceMethod::opacity_maps}) {
+        Recorder progress;
+        BakeRequest request = inputs.request();
+        request.transmittance.method = method;
+        BakeResult result = bake(request, 2, progress);
+        write_result(result, inputs.folder / "out", progress);
+        EXPECT_EQ(progress.phases, (std::vector<std::string>{"read_hair", "transmittance", "reference",
+                                                             "read_environment", "irradiance", "write"}));
+    }
 }
 
 TEST(Bake, MissingAndBrokenInputsAreBadInputThatNamesTheFile) {
@@ -362,7 +377,7 @@ TEST(Bake, MissingAndBrokenInputsAreBadInputThatNamesTheFile) {
     for (const char* name : {"missing.hair", "broken.hair", "missing.hdr", "broken.hdr"}) {
         BakeRequest request = inputs.request();
         (std::string(name).ends_with("hair") ? request.hair : request.environment) = (inputs.folder / name).string();
-        Progress progress;
+        BakeProgress progress;
         try {
             bake(request, 2, progress);
             ADD_FAILURE() << name;

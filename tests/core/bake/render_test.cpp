@@ -9,10 +9,10 @@
 #include "core/bake.h"
 #include "core/base/digest.h"
 #include "core/base/error.h"
-#include "core/camera_json.h"
 #include "core/environment/image_file.h"
+#include "core/render/camera_json.h"
 #include "core/result_reader.h"
-#include "tests/core/bake/small_inputs.h"
+#include "tests/support/small_inputs.h"
 
 namespace hairbake {
 namespace {
@@ -46,7 +46,7 @@ protected:
 
     SmallInputs inputs;
     RenderRequest request;
-    Progress progress;
+    BakeProgress progress;
 };
 
 TEST_F(RenderedResult, IsTheSamePictureAsOfABakeInMemory) {
@@ -163,7 +163,7 @@ TEST_F(RenderedResult, IsWrittenAsExrToTheLastBitAndAsPng) {
     write_picture(picture, 0, inputs.folder / "a.exr");
     write_picture(picture, 0, inputs.folder / "a.exr");  // replaces
     const ImageFile read = read_image_file(
-        inputs.folder / "a.exr", [](int, int) { return std::string(); }, {}, progress);
+        inputs.folder / "a.exr", [](int, int) { return std::string(); }, progress);
     EXPECT_EQ(read.width, 24);
     EXPECT_TRUE(read.pixels == picture.pixels);
     write_picture(picture, automatic_exposure(picture), inputs.folder / "a.png");

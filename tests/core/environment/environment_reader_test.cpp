@@ -11,7 +11,7 @@
 #include <numbers>
 
 #include "core/environment/environment_writer.h"
-#include "core/environment/sky_generator.h"
+#include "core/sample/sky_generator.h"
 #include "tests/support/make_map.h"
 #include "tests/support/shared_data.h"
 #include "tests/support/temporary_folder.h"

@@ -9,7 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/environment/cube_map.h"
 #include "core/environment/latlong.h"
-#include "core/environment/sky_generator.h"
+#include "core/sample/sky_generator.h"
 #include "tests/support/make_map.h"
 
 namespace hairbake {

@@ -7,8 +7,8 @@
 #include <filesystem>
 
 #include "core/environment/environment_reader.h"
-#include "core/environment/sky_generator.h"
 #include "core/irradiance/irradiance_maps.h"
+#include "core/sample/sky_generator.h"
 #include "tests/support/pixel_sum.h"
 #include "tests/support/shared_data.h"
 

@@ -8,8 +8,8 @@
 
 #include "core/base/parallel.h"
 #include "core/base/random.h"
-#include "core/environment/sky_generator.h"
 #include "core/fiber/kajiya_kay.h"
+#include "core/sample/sky_generator.h"
 #include "tests/support/make_map.h"
 
 namespace hairbake {

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/environment/sky_generator.h"
 #include "core/fiber/kajiya_kay.h"
 #include "core/irradiance/irradiance_maps.h"
 #include "core/irradiance/lookup.h"
+#include "core/sample/sky_generator.h"
 #include "tests/support/make_map.h"
 
 namespace hairbake {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
-#include "core/environment/sky_generator.h"
 #include "core/irradiance/irradiance_maps.h"
+#include "core/sample/sky_generator.h"
 #include "tests/support/make_map.h"
 #include "tests/support/pixel_sum.h"
 

@@ -4,8 +4,8 @@
 #include <functional>
 #include <limits>
 
-#include "core/environment/sky_generator.h"
 #include "core/irradiance/irradiance_maps.h"
+#include "core/sample/sky_generator.h"
 #include "tests/support/make_map.h"
 #include "tests/support/pixel_sum.h"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/environment/sky_generator.h"
 #include "core/fiber/kajiya_kay.h"
+#include "core/sample/sky_generator.h"
 #include "tests/support/make_map.h"
 #include "tests/support/pixel_sum.h"
 #include "tests/support/transfer_matrix.h"

@@ -6,8 +6,8 @@
 #include <fstream>
 
 #include "core/base/error.h"
-#include "core/hair/head_mesh.h"
 #include "core/mesh/mesh_normals.h"
+#include "core/sample/head_mesh.h"
 #include "tests/support/temporary_folder.h"
 
 namespace hairbake {

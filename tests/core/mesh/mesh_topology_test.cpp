@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/hair/head_mesh.h"
+#include "core/sample/head_mesh.h"
 #include "tests/support/mesh_models.h"
 
 namespace hairbake {

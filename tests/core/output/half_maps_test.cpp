@@ -65,7 +65,7 @@ protected:
     /// What check_half_maps.py prints about the container written of `maps`.
     std::string read_back(const IrradianceMaps& maps, double scale, const std::string& more = "") {
         const TemporaryFolder folder;
-        Progress progress;
+        BakeProgress progress;
         write_map_npy(maps, folder / "");
         for (const WrittenFile& file : GetParam().write(maps, folder / "", progress))
             EXPECT_EQ(file.scale, file.name == "maps.json" ? std::nullopt : std::optional(scale)) << file.name;
@@ -99,7 +99,7 @@ TEST_P(HalfMaps, HoldFaintRadianceWithAScale) {
 
 TEST_P(HalfMaps, RefuseMapsThatAreNotFiniteAndSayWhere) {
     const TemporaryFolder folder;
-    Progress progress;
+    BakeProgress progress;
     IrradianceMaps maps = random_maps(4, 1);
     maps.specular[1][(2 * 4 + 3) * 4 + 1].z = NAN;
     try {
@@ -119,7 +119,7 @@ INSTANTIATE_TEST_SUITE_P(Containers, HalfMaps,
 
 TEST(DdsFiles, NvddsinfoSeesACubeOfHalfFloatsWithAllLevels) {
     const TemporaryFolder folder;
-    Progress progress;
+    BakeProgress progress;
     EXPECT_EQ(write_map_dds(random_maps(16, 1), folder / "", progress).size(), 4u);
     for (const char* name : {"diffuse.dds", "specular_02.dds"}) {
         const auto info = run_program("nvddsinfo " + (folder / name).string() + " 2>&1");

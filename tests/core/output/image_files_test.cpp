@@ -31,7 +31,7 @@ bool contains(const std::string& text, const std::string& piece) { return text.f
 
 TEST(MapExr, OiiotoolFindsTheFacesInAVerticalStripWithTheirMetadata) {
     const TemporaryFolder folder;
-    Progress progress;
+    BakeProgress progress;
     const auto files = write_map_exr(*small_result().irradiance, folder / "", progress);
     EXPECT_EQ(files.size(), 8u);  // (diffuse + three specular) x (strip + lat-long)
     const std::string info = oiiotool_info(folder / "specular_01.exr");
@@ -45,7 +45,7 @@ TEST(MapExr, OiiotoolFindsTheFacesInAVerticalStripWithTheirMetadata) {
 
 TEST(MapExr, HoldsNeitherDateNorPath) {
     const TemporaryFolder folder;
-    Progress progress;
+    BakeProgress progress;
     write_map_exr(*small_result().irradiance, folder / "", progress);
     for (const char* name : {"diffuse.exr", "diffuse_latlong.exr"}) {
         const auto found =
@@ -56,7 +56,7 @@ TEST(MapExr, HoldsNeitherDateNorPath) {
 
 TEST(MapExr, NamesHaveAsManyDigitsAsTheLastMapNeeds) {
     const TemporaryFolder folder;
-    Progress progress;
+    BakeProgress progress;
     IrradianceMaps maps = *small_result().irradiance;
     maps.specular.resize(102, maps.diffuse);
     write_map_exr(maps, folder / "", progress);

@@ -31,7 +31,7 @@ TEST(LabelledMaps, StripAndLatLongShowEveryDirectionItsOwnLabel) {
     // The files of a result are themselves environments: the strip in the layout vertical_strip, the lat-long in the
     // convention gltf, which `auto` and the default take them for.
     const TemporaryFolder folder;
-    Progress progress;
+    BakeProgress progress;
     const IrradianceMaps maps = labelled_maps(64);
     write_map_exr(maps, folder / "", progress);
     for (const char* name : {"diffuse", "specular_00"}) {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
-#include "core/request_json.h"
+#include "core/request/request_json.h"
 #include "tests/core/output/small_result.h"
 #include "tests/support/temporary_folder.h"
 

@@ -6,6 +6,7 @@
 
 #include "core/base/parallel.h"
 #include "core/base/spherical_harmonics.h"
+#include "core/visibility/direction_set.h"
 #include "tests/core/reference/trace.h"
 #include "tests/support/receiver_points.h"
 #include "tests/support/strand_models.h"

@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/mesh/grounding.h"
+#include "core/visibility/direction_set.h"
 #include "tests/core/reference/trace.h"
 #include "tests/support/mesh_models.h"
 #include "tests/support/strand_models.h"

@@ -4,9 +4,9 @@
 #include <numeric>
 #include <vector>
 
-#include "core/base/direction_set.h"
 #include "core/reference/strand_scene.h"
 #include "core/reference/tracer.h"
+#include "core/visibility/direction_set.h"
 
 namespace hairbake::test_support {
 

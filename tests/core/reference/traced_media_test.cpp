@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/visibility/direction_set.h"
 #include "tests/core/reference/trace.h"
 #include "tests/support/analytic_media.h"
 #include "tests/support/random_media.h"

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/base/direction_set.h"
 #include "core/fiber/kajiya_kay.h"
 #include "core/reference/tracer.h"
 #include "core/render/fiber_lighting.h"
+#include "core/visibility/direction_set.h"
 #include "tests/support/make_map.h"
 #include "tests/support/strand_models.h"
 

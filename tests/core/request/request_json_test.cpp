@@ -1,10 +1,10 @@
-#include "core/request_json.h"
+#include "core/request/request_json.h"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "core/request_presets.h"
+#include "core/request/request_presets.h"
 #include "tests/core/request/expect_error.h"
 
 namespace hairbake {

@@ -1,8 +1,8 @@
-#include "core/request_keys.h"
+#include "core/request/request_keys.h"
 
 #include <gtest/gtest.h>
 
-#include "core/request_json.h"
+#include "core/request/request_json.h"
 
 namespace hairbake {
 namespace {

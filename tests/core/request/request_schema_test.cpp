@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
-#include "core/request_json.h"
-#include "core/request_presets.h"
+#include "core/request/request_json.h"
+#include "core/request/request_presets.h"
 
 namespace hairbake {
 namespace {

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/base/direction_moments.h"
 #include "core/base/gauss_legendre.h"
 #include "core/base/parallel.h"
 #include "core/base/spherical_harmonics.h"
 #include "core/environment/sh_rotation.h"
+#include "core/visibility/direction_moments.h"
+#include "core/visibility/direction_set.h"
 #include "tests/core/volume/stages.h"
 #include "tests/support/analytic_media.h"
 #include "tests/support/random_media.h"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/visibility/direction_set.h"
 #include "core/volume/near_field_window.h"
 #include "tests/core/volume/stages.h"
 #include "tests/support/strand_models.h"

@@ -8,6 +8,7 @@
 #include "core/base/parallel.h"
 #include "core/reference/error_bar.h"
 #include "core/reference/tracer.h"
+#include "core/visibility/direction_set.h"
 #include "core/volume/transmittance.h"
 #include "tests/support/mesh_models.h"
 #include "tests/support/strand_models.h"

@@ -1,5 +1,6 @@
 // The transmittance stage by deep opacity maps.
 #include "core/volume/opacity_transmittance.h"
+#include "core/visibility/direction_set.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/hair/groom_generator.h"
+#include "core/sample/groom_generator.h"
 #include "tests/core/reference/trace.h"
 #include "tests/support/strand_models.h"
 
@@ -196,7 +197,7 @@ TEST(OpacityMaps, RefuseAnOccluderAndSettingsOutOfRange) {
 TEST(OpacityMaps, StopWhenAsked) {
     class StopAtOnce : public Progress {
     public:
-        void report(std::string_view, double) override { cancel(); }
+        void report(double) override { cancel(); }
     } progress;
     const StrandGeometry strands = small_groom(300);
     try {

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include "core/base/direction_set.h"
-#include "core/base/hemisphere_means.h"
 #include "core/base/parallel.h"
+#include "core/visibility/direction_set.h"
+#include "core/visibility/hemisphere_means.h"
 #include "tests/core/volume/stages.h"
 #include "tests/support/random_media.h"
 #include "tests/support/receiver_points.h"

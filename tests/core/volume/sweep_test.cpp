@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/base/direction_moments.h"
+#include "core/visibility/direction_moments.h"
 #include "tests/core/volume/stages.h"
 #include "tests/support/strand_models.h"
 

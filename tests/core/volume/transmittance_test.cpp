@@ -341,8 +341,7 @@ TEST(Transmittance, StopsWhenItIsCancelled) {
     struct CancelsAt : Progress {
         double at;
         explicit CancelsAt(double fraction) : at(fraction) {}
-        void report(std::string_view stage, double fraction) override {
-            EXPECT_EQ(stage, "transmittance");
+        void report(double fraction) override {
             EXPECT_LE(fraction, 1);
             if (fraction >= at) cancel();
         }

@@ -1,0 +1,16 @@
+// The request's `strand` block.
+#pragma once
+
+#include <optional>
+
+namespace hairbake {
+
+/// The request's `strand` block: how the model's widths and opacities are read.
+struct StrandSettings {
+    std::optional<double> width;     ///< strand diameter in model units for every point, instead of the file's; > 0
+    double width_scale = 1;          ///< multiplies whichever width holds; > 0
+    double opacity = 1;              ///< share of light that one strand crossing stops, [0, 1]
+    bool opacity_from_file = false;  ///< take 1 - transparency of the file instead of `opacity`
+};
+
+}  // namespace hairbake

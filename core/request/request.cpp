@@ -1,0 +1,144 @@
+#include "core/request/request.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/base/error.h"
+
+namespace hairbake {
+namespace {
+
+std::string text(double value) {
+    char buffer[32];
+    std::snprintf(buffer, sizeof buffer, "%.10g", value);
+    return buffer;
+}
+
+[[noreturn]] void refuse(const std::string& field, const std::string& found, const std::string& allowed) {
+    throw Error(ErrorKind::usage, field + " is " + found + "; allowed is " + allowed, field);
+}
+
+/// Both ends belong to the range. A NaN is in no range.
+void check_range(const std::string& field, double value, double low, double high) {
+    if (!(value >= low && value <= high)) refuse(field, text(value), text(low) + " to " + text(high));
+}
+
+void check_positive(const std::string& field, double value, double high) {
+    if (!(value > 0 && value <= high)) refuse(field, text(value), "more than 0 and at most " + text(high));
+}
+
+void check_choice(const std::string& field, const std::string& value, const std::vector<std::string>& allowed) {
+    if (std::find(allowed.begin(), allowed.end(), value) != allowed.end()) return;
+    std::string list;
+    for (const std::string& choice : allowed) list += (list.empty() ? "" : ", ") + choice;
+    refuse(field, "\"" + value + "\"", "one of " + list);
+}
+
+void check_inputs(const BakeRequest& request) {
+    if (!request.hair && !request.environment)
+        throw Error(ErrorKind::usage,
+                    "the request has neither hair nor environment; give hair (--hair) for transmittance, environment "
+                    "(--env) for irradiance maps, or both",
+                    "hair");
+    if (request.hair && request.hair->empty()) refuse("hair", "empty", "a path");
+    for (const auto& [field, path] : {std::pair("environment", &request.environment),
+                                      {"occluder", &request.occluder},
+                                      {"receiver", &request.receiver}})
+        if (*path && (*path)->empty()) refuse(field, "empty", "a path");
+    for (const auto& [field, path] : {std::pair("occluder", &request.occluder), {"receiver", &request.receiver}})
+        if (*path && !request.hair) refuse(field, "given without hair", "a mesh beside a hair model");
+}
+
+void check_strand(const StrandSettings& strand) {
+    if (strand.width) check_positive("strand.width", *strand.width, 1e18);
+    check_positive("strand.width_scale", strand.width_scale, 1e6);
+    check_range("strand.opacity", strand.opacity, 0, 1);
+}
+
+void check_transmittance(const TransmittanceSettings& settings) {
+    check_range("transmittance.directions", settings.directions, 1, 4096);
+    const int root = static_cast<int>(std::lround(std::sqrt(settings.directions)));
+    if (settings.direction_set == DirectionSet::stratified && root * root != settings.directions)
+        refuse("transmittance.directions", std::to_string(settings.directions),
+               "a square number (1, 4, 9 ... 4096) with the direction set stratified");
+    check_range("transmittance.seed", static_cast<double>(settings.seed), 0, 0x1p53 - 1);
+    check_range("transmittance.voxels", settings.voxels, 32, 1024);
+    if (settings.voxel_size) check_positive("transmittance.voxel_size", *settings.voxel_size, 1e18);
+    check_range("transmittance.sh_bands", settings.sh_bands, 0, 4);
+    check_range("transmittance.opacity_maps.layers", settings.opacity_maps.layers, 1, 16);
+    check_range("transmittance.opacity_maps.layer_spacing", settings.opacity_maps.layer_spacing, 1, 16);
+    check_range("transmittance.opacity_maps.resolution", settings.opacity_maps.resolution, 16, 4096);
+    check_range("transmittance.reference_vertices", settings.reference_vertices, 0, 100000);
+}
+
+void check_environment(const EnvironmentSettings& settings) {
+    check_choice(
+        "irradiance.layout", settings.layout,
+        {"auto", "latlong", "faces", "horizontal_cross", "vertical_cross", "horizontal_strip", "vertical_strip"});
+    for (const double angle : settings.rotation_deg) check_range("irradiance.rotation_deg", angle, -36000, 36000);
+    check_range("irradiance.exposure_stops", settings.exposure_stops, -64, 64);
+    for (const double factor : settings.tint) check_range("irradiance.tint", factor, 0, 1e6);
+}
+
+void check_light(const std::string& field, const DirectionalLight& light) {
+    for (int i = 0; i < 3; ++i) {
+        check_range(field + ".direction", light.direction[i], -1e6, 1e6);
+        check_range(field + ".irradiance", light.irradiance[i], 0, 1e12);
+    }
+    if (!(dot(light.direction, light.direction) > 1e-12))
+        refuse(field + ".direction", "of no length", "a direction towards the light");
+}
+
+void check_irradiance(const IrradianceSettings& settings) {
+    check_choice("irradiance.model", settings.model, {"kajiya-kay"});
+    check_range("irradiance.face_size", settings.face_size, 4, 256);
+    check_range("irradiance.specular_maps", settings.specular_maps, 2, 257);
+    check_range("irradiance.exponent", settings.exponent, 0, 4096);
+    if (settings.sh_bands_diffuse) check_range("irradiance.sh_bands.diffuse", *settings.sh_bands_diffuse, 1, 128);
+    if (settings.sh_bands_specular) check_range("irradiance.sh_bands.specular", *settings.sh_bands_specular, 1, 128);
+    check_positive("irradiance.sh_error", settings.sh_error, 1);
+    if (settings.lights.size() > 64)
+        refuse("irradiance.lights", std::to_string(settings.lights.size()) + " lights", "at most 64");
+    for (std::size_t i = 0; i < settings.lights.size(); ++i)
+        check_light("irradiance.lights[" + std::to_string(i) + "]", settings.lights[i]);
+}
+
+void check_occluder(const BakeRequest& request) {
+    if (request.occluder && request.transmittance.method == TransmittanceMethod::opacity_maps)
+        refuse("occluder", "given to the method opacity_maps", "an occluder with the methods volume and trace");
+}
+
+void check_outputs(const BakeRequest& request) {
+    const std::vector<std::string>& outputs = request.outputs;
+    for (auto output = outputs.begin(); output != outputs.end(); ++output) {
+        check_choice("outputs", *output, output_formats());
+        if (std::find(outputs.begin(), output, *output) != output) refuse("outputs", *output + " twice", "each once");
+    }
+    // Known before the bake, so said before it.
+    if (request.hair && request.wants("vdb") && request.transmittance.method != TransmittanceMethod::volume)
+        refuse("outputs", "vdb with a transmittance.method that has no density grid", "vdb with the method volume");
+}
+
+}  // namespace
+
+bool BakeRequest::wants(const std::string& format) const {
+    return std::find(outputs.begin(), outputs.end(), format) != outputs.end();
+}
+
+const std::vector<std::string>& output_formats() {
+    static const std::vector<std::string> formats{"npy", "exr", "hair", "ktx2", "dds", "raw", "glb", "vdb"};
+    return formats;
+}
+
+void validate(const BakeRequest& request) {
+    check_inputs(request);
+    check_strand(request.strand);
+    check_transmittance(request.transmittance);
+    check_environment(request.environment_settings);
+    check_irradiance(request.irradiance);
+    check_occluder(request);
+    check_outputs(request);
+}
+
+}  // namespace hairbake

@@ -1,0 +1,146 @@
+#include "core/request/request_json.h"
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/json_nesting.h"
+#include "core/request/request_fields.h"
+
+namespace hairbake {
+namespace {
+
+using Json = RequestField::Json;
+
+const RequestField* find_field(const std::string& path) {
+    for (const RequestField& field : request_fields())
+        if (field.path == path) return &field;
+    return nullptr;
+}
+
+bool is_block(const std::string& path) {
+    for (const RequestField& field : request_fields())
+        if (field.path.starts_with(path + ".")) return true;
+    return false;
+}
+
+/// Names that may stand in the object `block` ("" for the request itself): "width, width_scale, opacity".
+std::string names_in(const std::string& block) {
+    const std::string prefix = block.empty() ? "" : block + ".";
+    std::string list, last;
+    for (const RequestField& field : request_fields()) {
+        if (!field.path.starts_with(prefix)) continue;
+        const std::string name = field.path.substr(prefix.size(), field.path.find('.', prefix.size()) - prefix.size());
+        if (name != last) list += (list.empty() ? "" : ", ") + name;
+        last = name;
+    }
+    return list;
+}
+
+[[noreturn]] void refuse_unknown(const std::string& path) {
+    const std::size_t dot = path.rfind('.');
+    const std::string block = dot == std::string::npos ? "" : path.substr(0, dot);
+    const bool known_block = block.empty() || is_block(block);
+    throw Error(ErrorKind::usage,
+                path + " is not a field of the request; allowed are " +
+                    (known_block && !block.empty() ? "in " + block + ": " + names_in(block) : names_in("")),
+                path);
+}
+
+void merge_object(BakeRequest& request, const Json& object, const std::string& block) {
+    if (!object.is_object()) refuse_value(block.empty() ? "the request" : block, object, "an object");
+    for (const auto& [name, value] : object.items()) {
+        const std::string path = block.empty() ? name : block + "." + name;
+        const bool dotted = name.find('.') != std::string::npos;  // paths are for --set alone
+        const RequestField* field = find_field(path);
+        if (dotted || (!field && !is_block(path))) refuse_unknown(path);
+        if (field)
+            field->set(request, value);
+        else
+            merge_object(request, value, path);
+    }
+}
+
+/// All fields, or those of one block ("strand").
+Json to_object(const BakeRequest& request, const std::string& block = {}) {
+    Json object = Json::object();
+    for (const RequestField& field : request_fields()) {
+        if (!block.empty() && !field.path.starts_with(block + ".")) continue;
+        std::string pointer = "/" + field.path;
+        for (char& c : pointer)
+            if (c == '.') c = '/';
+        object[Json::json_pointer(pointer)] = field.get(request);
+    }
+    return object;
+}
+
+/// `path` is the field that it is for.
+Json json_or_text(const std::string& text, const std::string& path) {
+    Json value = Json::parse(text, nullptr, false);
+    if (value.is_discarded()) return text;
+    check_nesting(text, path, ErrorKind::usage, path);
+    return value;
+}
+
+Json list_of(const std::string& text, const std::string& path) {
+    Json list = Json::array();
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        if (end > begin) list.push_back(json_or_text(text.substr(begin, end - begin), path));
+        begin = end + 1;
+    }
+    return list;
+}
+
+}  // namespace
+
+std::string to_json(const BakeRequest& request, int indent) {
+    return to_object(request).dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+void merge_json(BakeRequest& request, std::string_view text, const std::string& source) {
+    check_nesting(text, source, ErrorKind::usage);
+    BakeRequest merged = request;
+    try {
+        merge_object(merged, Json::parse(text), "");
+    } catch (const Json::exception& error) {
+        throw Error(ErrorKind::usage, source + " is not JSON: " + error.what());
+    } catch (const Error& error) {
+        throw Error(error.kind(), source + ": " + error.what(), error.field());
+    }
+    request = std::move(merged);
+}
+
+void set_field(BakeRequest& request, const std::string& path, const std::string& value) {
+    const RequestField* field = find_field(path);
+    if (!field && is_block(path))
+        throw Error(ErrorKind::usage, path + " is a block; set one of its fields: " + names_in(path), path);
+    if (!field) refuse_unknown(path);
+
+    Json parsed = json_or_text(value, path);
+    const Json current = field->get(request);
+    if (current.is_array() && !parsed.is_array()) parsed = list_of(value, path);
+    if (path == "hair" || path == "environment" || path == "occluder" || path == "receiver")
+        if (!parsed.is_null()) parsed = value;  // a file may be called 12 or true
+    BakeRequest changed = request;
+    field->set(changed, parsed);
+    request = std::move(changed);
+}
+
+std::vector<std::string> field_paths() {
+    std::vector<std::string> paths;
+    for (const RequestField& field : request_fields()) paths.push_back(field.path);
+    return paths;
+}
+
+std::string canonical_transmittance_settings(const BakeRequest& request) {
+    nlohmann::json sorted = to_object(request, "transmittance");
+    sorted["strand"] = to_object(request, "strand")["strand"];
+    return sorted.dump();
+}
+
+std::string canonical_irradiance_settings(const BakeRequest& request) {
+    return nlohmann::json(to_object(request, "irradiance")["irradiance"]).dump();
+}
+
+}  // namespace hairbake

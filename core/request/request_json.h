@@ -1,0 +1,32 @@
+// JSON <-> BakeRequest: the only code that knows the request's JSON form.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/request/request.h"
+
+namespace hairbake {
+
+/// The whole request as JSON text: every field, in the order of the documentation. `indent` < 0 gives one line.
+std::string to_json(const BakeRequest& request, int indent = 2);
+
+/// Takes over the fields that the JSON object `text` names and leaves the others as they are; `source` stands for
+/// it in messages. Nothing is changed when it throws: Error(usage) naming the field, what was found and what is
+/// allowed, for broken JSON, JSON of more than 64 levels, an unknown field or a wrong type. Ranges are validate()'s.
+void merge_json(BakeRequest& request, std::string_view text, const std::string& source);
+
+/// Sets one field by its path: set_field(request, "transmittance.method", "trace"). `value` is JSON or, where it
+/// is not, plain text; a list may be given with commas ("npy,exr", "0,90,0"). Throws as merge_json.
+void set_field(BakeRequest& request, const std::string& path, const std::string& value);
+
+/// Paths of all fields, "irradiance.sh_bands.diffuse" and the like, in the order of to_json.
+std::vector<std::string> field_paths();
+
+/// Canonical JSON (sorted keys, one line) of what the two stages read from the request, paths of files left out.
+/// Stage keys are made of these.
+std::string canonical_transmittance_settings(const BakeRequest& request);
+std::string canonical_irradiance_settings(const BakeRequest& request);
+
+}  // namespace hairbake

@@ -1,0 +1,29 @@
+// The presets and the request's JSON schema, compiled into the program from config/.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/request/request.h"
+
+namespace hairbake {
+
+struct Preset {
+    std::string_view name;  ///< "paper", "draft", "final"
+    std::string_view json;  ///< the file: {"description": text, "request": fields that differ from the defaults}
+};
+
+/// All presets, in the order in which a person should meet them.
+std::span<const Preset> presets();
+
+/// What the preset is for, in one sentence.
+std::string preset_description(const Preset& preset);
+
+/// Takes the preset's fields over into `request`. Throws Error(usage) naming the presets there are.
+void apply_preset(BakeRequest& request, std::string_view name);
+
+/// config/request.schema.json (JSON Schema draft-07): the one schema of command line, service and OpenAPI document.
+std::string_view request_schema();
+
+}  // namespace hairbake

@@ -1,0 +1,211 @@
+#include "core/tools/inspect.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <span>
+
+#include "core/base/error.h"
+#include "core/environment/cube_map.h"
+#include "core/environment/environment_files.h"
+#include "core/environment/environment_reader.h"
+#include "core/hair/hair_file.h"
+#include "core/output/manifest.h"
+
+namespace hairbake {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class T>
+Json triple(const Vec3<T>& v) {
+    return {v.x, v.y, v.z};
+}
+
+/// Smallest and largest of the array, or the header's default where the file has none.
+Json range_of(std::span<const float> values, float otherwise) {
+    if (values.empty()) return {{"default", otherwise}};
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    return {{"minimum", *low}, {"maximum", *high}};
+}
+
+/// What a bake of the model's own widths will be refused for; empty where it will not.
+std::string width_warning(const HairModel& model) {
+    const auto missing = [](float width) { return !(width > 0); };
+    const std::vector<float>& widths = model.thickness;
+    const auto count = std::count_if(widths.begin(), widths.end(), missing);
+    const bool none = widths.empty() ? missing(model.default_thickness) : count == std::ssize(widths);
+    if (none) return "the model has no strand width: a bake needs strand.width (--width)";
+    if (count == 0) return "";
+    const auto first = static_cast<std::size_t>(std::find_if(widths.begin(), widths.end(), missing) - widths.begin());
+    return std::to_string(count) + " of the model's " + std::to_string(widths.size()) +
+           " vertices have no strand width, the first at " + place_of_point(model, first) +
+           ": a bake needs strand.width (--width)";
+}
+
+Json hair_facts(const fs::path& file) {
+    const HairModel model = read_hair(file);
+    Json facts{{"kind", "hair model"},
+               {"format", model.format},
+               {"strands", model.strand_count()},
+               {"vertices", model.vertex_count()}};
+    std::uint32_t longest = 0;
+    for (std::size_t s = 0; s < model.strand_count(); ++s)
+        longest = std::max(longest, model.strand_begin[s + 1] - model.strand_begin[s]);
+    facts["longest_strand"] = longest;
+    if (!model.positions.empty()) {
+        Vec3f low = model.positions[0], high = low;
+        for (const Vec3f& p : model.positions) {
+            low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+            high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+        }
+        facts["bounds"] = {{"minimum", triple(low)}, {"maximum", triple(high)}};
+    }
+    facts["thickness"] = range_of(model.thickness, model.default_thickness);
+    facts["transparency"] = range_of(model.transparency, model.default_transparency);
+    facts["colors"] = model.colors.empty() ? Json(triple(model.default_color)) : Json("one a vertex");
+    const char* info = model.info.data();
+    facts["info"] = std::string(info, std::find(info, info + model.info.size(), '\0'));
+    if (const std::string warning = width_warning(model); !warning.empty()) facts["warnings"] = {warning};
+    return facts;
+}
+
+Json brightest_pixel(const EnvironmentMap& map) {
+    const auto sum = [](const Vec3f& c) { return c.x + c.y + c.z; };
+    const auto brightest = std::max_element(map.pixels.begin(), map.pixels.end(),
+                                            [&](const Vec3f& a, const Vec3f& b) { return sum(a) < sum(b); });
+    const auto index = static_cast<std::size_t>(brightest - map.pixels.begin());
+    const std::size_t row = index / map.width, column = index % map.width;
+    Json facts = Json::object();
+    const bool cube = map.shape == EnvironmentShape::cube;
+    if (cube) facts["face"] = std::string(cube_face_name(static_cast<int>(row / map.width)));
+    facts["row"] = cube ? row % map.width : row;
+    facts["column"] = column;
+    facts["radiance"] = triple(*brightest);
+    facts["direction"] = triple(direction_of(map, {column + 0.5, row + 0.5}));
+    return facts;
+}
+
+/// A sun or small lamps: the pixels of at least an eighth of the largest radiance, where together they are smaller than
+/// a disc 9 degrees across (0.02 sr) and hold at least a twentieth of the light; null elsewhere.
+Json small_lights(const EnvironmentMap& map) {
+    const auto sum = [](const Vec3f& c) { return double(c.x) + c.y + c.z; };
+    double largest = 0;
+    for (const Vec3f& pixel : map.pixels) largest = std::max(largest, sum(pixel));
+    const TexelSolidAngles solid_angles = texel_solid_angles(map);
+    double total = 0, held = 0, size = 0;
+    std::size_t pixels = 0;
+    for (int y = 0; y < map.height; ++y)
+        for (int x = 0; x < map.width; ++x) {
+            const double radiance = sum(map.pixels[std::size_t(y) * map.width + x]), angle = solid_angles.at(x, y);
+            total += radiance * angle;
+            if (radiance < largest / 8) continue;
+            held += radiance * angle;
+            size += angle;
+            ++pixels;
+        }
+    if (total <= 0 || held < 0.05 * total || size > 0.02) return nullptr;
+    return {{"pixels", pixels}, {"share", held / total}};
+}
+
+Json mean_radiance(const EnvironmentMap& map) {
+    const TexelSolidAngles solid_angles = texel_solid_angles(map);
+    Vec3d sum;
+    for (int y = 0; y < map.height; ++y)
+        for (int x = 0; x < map.width; ++x)
+            sum += Vec3d(map.pixels[std::size_t(y) * map.width + x]) * solid_angles.at(x, y);
+    return triple(sum / (4 * std::numbers::pi));
+}
+
+Json environment_facts(const fs::path& file, Progress& progress) {
+    EnvironmentSettings settings;
+    settings.invalid_radiance = InvalidRadiance::clamp;  // so that every map can be looked at; counted below
+    const EnvironmentMap map = read_environment(file, settings, progress);
+    Json facts{{"kind", "environment map"}, {"format", map.source_format}, {"layout", map.layout}};
+    if (map.shape == EnvironmentShape::cube)
+        facts["face_size"] = map.width;
+    else
+        facts.update({{"width", map.width}, {"height", map.height}});
+    facts["primaries"] = map.primaries;
+    facts["low_dynamic_range"] = map.low_dynamic_range;
+    facts["mean_radiance"] = mean_radiance(map);
+    facts["brightest_pixel"] = brightest_pixel(map);
+    if (const Json lights = small_lights(map); !lights.is_null()) facts["small_lights"] = lights;
+    const RadianceRepairs& repairs = map.repairs;
+    facts["invalid_pixels"] = {
+        {"negative", repairs.negative_pixels}, {"nan", repairs.nan_pixels}, {"infinite", repairs.infinite_pixels}};
+    facts["negative_energy"] = repairs.energy_removed;
+    facts["warnings"] = map.warnings;
+    return facts;
+}
+
+Json result_facts(const fs::path& folder) {
+    files_of_result(folder);  // throws unless it is a result
+    const Json manifest = Json::parse(read_manifest_text(folder / "manifest.json"));
+    Json facts{{"kind", "bake result"}};
+    for (const char* name : {"id", "stages", "inputs", "transmittance", "error_bar", "repairs", "warnings", "versions",
+                             "timings_s", "peak_memory_bytes"})
+        if (manifest.contains(name)) facts[name] = manifest[name];
+    Json files = Json::object();
+    for (const Json& file : manifest["files"]) files[file.at("name").get<std::string>()] = file.value("bytes", 0ull);
+    facts["files"] = files;
+    return facts;
+}
+
+/// Of a result, or of the six faces of an environment.
+Json folder_facts(const fs::path& folder, Progress& progress) {
+    if (fs::exists(folder / "manifest.json")) return result_facts(folder);
+    try {
+        return environment_facts(folder, progress);
+    } catch (const Error& error) {
+        throw Error(error.kind(), std::string(error.what()) + "; nor is there the manifest.json of a bake result",
+                    error.field());
+    }
+}
+
+std::string value_text(const Json& value) {
+    if (value.is_string()) return value.get<std::string>();
+    if (value.is_number_float()) {
+        char buffer[32];
+        std::snprintf(buffer, sizeof buffer, "%.6g", value.get<double>());
+        return buffer;
+    }
+    if (!value.is_array()) return value.dump();
+    std::string list;
+    for (const Json& item : value) list += (list.empty() ? "" : "  ") + value_text(item);
+    return list;
+}
+
+void add_lines(const Json& object, const std::string& prefix, std::string& lines) {
+    for (const auto& [name, value] : object.items()) {
+        if (value.is_object()) {
+            add_lines(value, prefix + name + ".", lines);
+        } else if (!(value.is_array() && value.empty())) {
+            std::string label = prefix + name;
+            label.resize(std::max<std::size_t>(label.size() + 2, 34), ' ');
+            lines += label + value_text(value) + "\n";
+        }
+    }
+}
+
+}  // namespace
+
+std::string inspect(const fs::path& path, Progress& progress) {
+    Json facts{{"path", path.string()}};
+    if (fs::is_directory(path))
+        facts.update(folder_facts(path, progress));
+    else if (find_environment_files(path).faces())
+        facts.update(environment_facts(path, progress));
+    else
+        facts.update(is_hair_file(path) ? hair_facts(path) : environment_facts(path, progress));
+    return facts.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string as_lines(const std::string& json_object) {
+    std::string lines;
+    add_lines(Json::parse(json_object), "", lines);
+    return lines;
+}
+
+}  // namespace hairbake
