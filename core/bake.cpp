@@ -18,7 +18,7 @@
 #include "core/output/result_files.h"
 #include "core/output/result_folder.h"
 #include "core/reference/tracer.h"
-#include "core/request/request_keys.h"
+#include "core/request/stages.h"
 #include "core/visibility/direction_set.h"
 #include "core/volume/opacity_transmittance.h"
 
@@ -74,6 +74,10 @@ Transmittance trace_all(const StrandScene& scene, const TransmittanceScene& bake
     return transmittance;
 }
 
+void add_key(BakeResult& result, std::string_view stage) {
+    result.keys[std::string(stage)] = stage_key(*find_stage(stage), result.digests, result.request);
+}
+
 /// Which of its edges make a mesh something else than a closed surface, for a warning.
 std::string shell_of(const MeshTopology& topology) {
     return std::to_string(topology.open_edges) + " of its " + std::to_string(topology.edges) +
@@ -95,10 +99,10 @@ void read_occluder(BakeResult& result) {
 void read_hair_stage(BakeResult& result, BakeProgress& progress) {
     run_stage(result, progress, "read_hair", [&] {
         const BakeRequest& request = result.request;
-        result.hair_inputs.hair = digest_of_file(*request.hair);
-        if (request.occluder) result.hair_inputs.occluder = digest_of_file(*request.occluder);
-        if (request.receiver) result.hair_inputs.receiver = digest_of_file(*request.receiver);
-        result.transmittance_key = transmittance_key(result.hair_inputs, result.request);
+        result.digests["hair"] = digest_of_file(*request.hair);
+        if (request.occluder) result.digests["occluder"] = digest_of_file(*request.occluder);
+        if (request.receiver) result.digests["receiver"] = digest_of_file(*request.receiver);
+        add_key(result, "transmittance");
         result.hair = read_hair(*request.hair);
         if (request.occluder) read_occluder(result);
         check_outputs(result);
@@ -127,7 +131,7 @@ void transmittance_stage(BakeResult& result, BakeProgress& progress) {
     const TriangleMesh* occluder = result.occluder ? &*result.occluder : nullptr;
     TransmittanceScene baked{strands, occluder};
     baked.receiver = result.receiver ? &*result.receiver : nullptr;
-    baked.receiver_is_occluder = baked.receiver && result.hair_inputs.receiver == result.hair_inputs.occluder;
+    baked.receiver_is_occluder = baked.receiver && result.digests["receiver"] == result.digests["occluder"];
     run_stage(result, progress, "transmittance", [&] {
         naming_file(*result.request.hair, [&] {
             strands = make_strand_geometry(*result.hair, result.request.strand);
@@ -148,8 +152,8 @@ void transmittance_stage(BakeResult& result, BakeProgress& progress) {
 void read_environment_stage(BakeResult& result, BakeProgress& progress) {
     run_stage(result, progress, "read_environment", [&] {
         const std::string& file = *result.request.environment;
-        result.environment_digest = digest_of_environment(file);
-        result.irradiance_key = irradiance_key(result.environment_digest, result.request);
+        result.digests["environment"] = digest_of_environment(file);
+        add_key(result, "irradiance");
         result.environment = read_environment(file, result.request.environment_settings, progress);
     });
     add_warnings(result, result.environment->warnings);
@@ -183,7 +187,7 @@ BakeResult bake(const BakeRequest& request, int threads, BakeProgress& progress)
     } catch (const std::bad_alloc&) {
         throw Error(ErrorKind::out_of_resources, "memory ran out; fewer voxels or smaller maps need less");
     }
-    result.id = bake_id(result.transmittance_key, result.irradiance_key, request);
+    result.id = bake_id(result.keys, request);
     result.measured.peak_memory_bytes = peak_memory();
     return result;
 }

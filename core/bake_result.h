@@ -14,7 +14,7 @@
 #include "core/mesh/triangle_mesh.h"
 #include "core/reference/error_bar.h"
 #include "core/request/request.h"
-#include "core/request/request_keys.h"
+#include "core/request/stages.h"
 #include "core/volume/transmittance.h"
 
 namespace hairbake {
@@ -37,12 +37,12 @@ struct Measured {
 };
 
 struct BakeResult {
-    BakeRequest request;  ///< as run
-    std::string id;       ///< digest of the two stage keys and the outputs
+    BakeRequest request;   ///< as run
+    std::string id;        ///< bake_id()
+    InputDigests digests;  ///< of the files that were read
+    StageKeys keys;        ///< of the stages that ran
 
     // The transmittance stage; empty without hair.
-    TransmittanceInputs hair_inputs;  ///< SHA-256 of the files
-    std::string transmittance_key;    ///< SHA-256 of what the stage read
     HairFacts hair_facts;
     std::optional<HairModel> hair;  ///< kept only where the outputs need it
     std::optional<TriangleMesh> occluder;
@@ -52,7 +52,6 @@ struct BakeResult {
     std::optional<ErrorBar> error_bar;  ///< with reference_vertices > 0
 
     // The irradiance stage; empty without environment.
-    std::string environment_digest, irradiance_key;
     std::optional<EnvironmentMap> environment;  ///< facts; the pixels are dropped after the stage
     std::optional<IrradianceMaps> irradiance;
 

@@ -70,7 +70,7 @@ RenderRequest make_request(const RenderOptions& options) {
         const std::size_t sign = setting.find('=');
         if (sign == std::string::npos)
             throw Error(ErrorKind::usage, "--set " + setting + " is not of the form path=value", "set");
-        set_field(request.bake, setting.substr(0, sign), setting.substr(sign + 1));
+        say_warnings(set_field(request.bake, setting.substr(0, sign), setting.substr(sign + 1)));
     }
     if (request.result && (options.preset || !options.settings.empty()))
         throw Error(ErrorKind::usage, "--preset and --set say how to bake; a result folder is baked already", "set");

@@ -12,7 +12,7 @@
 #include "core/output/map_metadata.h"
 #include "core/output/versions.h"
 #include "core/request/request_json.h"
-#include "core/request/request_keys.h"
+#include "core/request/stages.h"
 
 namespace hairbake {
 namespace {
@@ -28,15 +28,15 @@ Json triple(const Vec3<T>& v) {
 
 Json stages(const BakeResult& result) {
     Json block = Json::object();
-    if (result.transmittance)
-        block["transmittance"] = {{"key", result.transmittance_key}, {"algorithm", transmittance_algorithm}};
-    if (result.irradiance) block["irradiance"] = {{"key", result.irradiance_key}, {"algorithm", irradiance_algorithm}};
+    for (const Stage& stage : hairbake::stages())
+        if (const auto key = result.keys.find(stage.name); key != result.keys.end())
+            block[std::string(stage.name)] = {{"key", key->second}, {"algorithm", stage.algorithm}};
     return block;
 }
 
 Json hair_input(const BakeResult& result) {
     const HairFacts& facts = result.hair_facts;
-    return {{"sha256", result.hair_inputs.hair},
+    return {{"sha256", result.digests.at("hair")},
             {"strands", facts.strands},
             {"vertices", facts.vertices},
             {"segments", facts.segments},
@@ -45,7 +45,7 @@ Json hair_input(const BakeResult& result) {
 
 Json environment_input(const BakeResult& result) {
     const EnvironmentMap& map = *result.environment;
-    Json block{{"sha256", result.environment_digest}};
+    Json block{{"sha256", result.digests.at("environment")}};
     if (map.shape == EnvironmentShape::cube)
         block["face_size"] = map.width;
     else
@@ -61,7 +61,7 @@ Json environment_input(const BakeResult& result) {
 
 Json occluder_input(const BakeResult& result) {
     const MeshTopology& topology = result.occluder_topology;
-    return {{"sha256", result.hair_inputs.occluder},
+    return {{"sha256", result.digests.at("occluder")},
             {"positions", result.occluder->positions.size()},
             {"triangles", result.occluder->triangles.size()},
             {"closed", topology.closed},
@@ -70,7 +70,7 @@ Json occluder_input(const BakeResult& result) {
 }
 
 Json receiver_input(const BakeResult& result) {
-    return {{"sha256", result.hair_inputs.receiver},
+    return {{"sha256", result.digests.at("receiver")},
             {"positions", result.receiver->positions.size()},
             {"triangles", result.receiver->triangles.size()}};
 }

@@ -22,7 +22,7 @@ TEST(Manifest, TellsOfHarmonicsConesAndTheReceiver) {
     EXPECT_FALSE(Json::parse(make_manifest(result, files))["transmittance"].contains("receiver"));
     result.request.transmittance.sh_bands = 2;
     result.request.transmittance.bent_cone = true;
-    result.hair_inputs.receiver = "ee";
+    result.digests["receiver"] = "ee";
     result.receiver.emplace();
     result.receiver->positions.resize(2);
     result.transmittance->receiver = {0.25f, 0.5f, 0.75f, 1};
@@ -89,6 +89,7 @@ TEST(Manifest, AnErrorBarWithoutAVertexHasNoErrorRatherThanNone) {
 TEST(Manifest, LeavesOutAStageThatDidNotRun) {
     BakeResult result = test_support::small_result();
     result.transmittance.reset();
+    result.keys.erase("transmittance");
     result.error_bar.reset();
     const Json manifest = Json::parse(make_manifest(result, files));
     EXPECT_TRUE(manifest["error_bar"].is_null());

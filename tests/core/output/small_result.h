@@ -19,10 +19,8 @@ inline BakeResult small_result() {
     result.request.hair = "two.hair";
     result.request.environment = "sky.hdr";
     result.id = "0123456789abcdef";
-    result.hair_inputs.hair = "aa";
-    result.transmittance_key = "bb";
-    result.environment_digest = "cc";
-    result.irradiance_key = "dd";
+    result.digests = {{"hair", "aa"}, {"environment", "cc"}};
+    result.keys = {{"transmittance", "bb"}, {"irradiance", "dd"}};
     result.hair_facts = {2, 5, 3, 1, {0, 0, 0}, {1, 2, 0}};
 
     HairModel model;
