@@ -86,7 +86,7 @@ void run(const RenderOptions& options) {
     const std::optional<double> exposure = parse_exposure(options.exposure);
     RenderedPicture picture;
     {
-        std::vector<PlannedPhase> phases;
+        std::vector<Phase> phases;
         if (!request.result) phases = {{"read_hair", 1}, {"transmittance", 5}, {"irradiance", 1}};
         phases.insert(phases.end(), {{"reference", 1}, {"read_environment", 1}, {"render", 20}});
         const auto progress = make_progress_display(options.progress, phases);

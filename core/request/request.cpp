@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/request/request_presets.h"
 
 namespace hairbake {
 namespace {
@@ -129,7 +131,8 @@ bool BakeRequest::wants(const std::string& format) const {
 }
 
 const std::vector<std::string>& output_formats() {
-    static const std::vector<std::string> formats{"npy", "exr", "hair", "ktx2", "dds", "raw", "glb", "vdb"};
+    static const auto formats = nlohmann::json::parse(request_schema())["properties"]["outputs"]["items"]["enum"]
+                                    .get<std::vector<std::string>>();
     return formats;
 }
 

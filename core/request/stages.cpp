@@ -6,6 +6,7 @@
 
 #include "core/base/digest.h"
 #include "core/request/request_fields.h"
+#include "core/request/request_presets.h"
 
 namespace hairbake {
 namespace {
@@ -16,18 +17,16 @@ using Text = std::string_view;
 
 constexpr Text transmittance_inputs[] = {"hair", "occluder", "receiver"};
 constexpr Text transmittance_settings[] = {"strand", "transmittance"};
-constexpr Text transmittance_formats[] = {"npy", "hair", "raw", "glb", "vdb"};
 constexpr Phase transmittance_phases[] = {{"transmittance", 10}, {"reference", 5}};
 
 constexpr Text irradiance_inputs[] = {"environment"};
 constexpr Text irradiance_settings[] = {"irradiance", "environment_settings", "fiber"};
-constexpr Text irradiance_formats[] = {"npy", "exr", "ktx2", "dds", "raw"};
 constexpr Phase irradiance_phases[] = {{"irradiance", 2}};
 
 constexpr Stage table[] = {
-    {"transmittance", 2, transmittance_inputs, transmittance_settings, transmittance_formats, transmittance_phases,
+    {"transmittance", 2, transmittance_inputs, transmittance_settings, transmittance_phases,
      [](const BakeRequest& request) { return request.hair.has_value(); }, true, ""},
-    {"irradiance", 2, irradiance_inputs, irradiance_settings, irradiance_formats, irradiance_phases,
+    {"irradiance", 2, irradiance_inputs, irradiance_settings, irradiance_phases,
      [](const BakeRequest& request) { return request.environment.has_value(); }, true, "irradiance"},
 };
 
@@ -83,6 +82,15 @@ const Stage* find_stage(std::string_view name) {
     return nullptr;
 }
 
+const std::vector<std::string>& formats_of(const Stage& stage) {
+    using Lists = std::map<std::string, std::vector<std::string>, std::less<>>;
+    static const Lists lists =
+        RequestField::Json::parse(request_schema())["properties"]["outputs"]["x-stages"].get<Lists>();
+    static const std::vector<std::string> none;
+    const auto found = lists.find(stage.name);
+    return found == lists.end() ? none : found->second;
+}
+
 std::vector<const Stage*> stages_of(const BakeRequest& request) {
     std::vector<const Stage*> list;
     for (const Stage& stage : table)
@@ -129,9 +137,9 @@ BakeRequest request_alone(const Stage& stage, const BakeRequest& request) {
         const bool input = std::find(stage.inputs.begin(), stage.inputs.end(), field.path) != stage.inputs.end();
         if (input || (reads(stage, field) && !of_another_model(field, request))) field.set(alone, field.get(request));
     }
+    const std::vector<std::string>& formats = formats_of(stage);
     for (const std::string& format : request.outputs)
-        if (std::find(stage.formats.begin(), stage.formats.end(), format) != stage.formats.end())
-            alone.outputs.push_back(format);
+        if (std::find(formats.begin(), formats.end(), format) != formats.end()) alone.outputs.push_back(format);
     std::sort(alone.outputs.begin(), alone.outputs.end());
     return alone;
 }

@@ -31,7 +31,6 @@ struct Stage {
     std::span<const std::string_view>
         inputs;  ///< fields of the request that name the stage's files, in the key's order
     std::span<const std::string_view> settings;  ///< blocks and fields of the request that it reads
-    std::span<const std::string_view> formats;   ///< outputs in which the stage writes files
     std::span<const Phase> phases;               ///< of the stage itself, without the reading of inputs
     bool (*asked_for)(const BakeRequest&);
     bool of_first_version;  ///< has a line in every bake's id, also where it does not run
@@ -41,6 +40,9 @@ struct Stage {
 
 /// All stages, in the order in which a bake runs them.
 std::span<const Stage> stages();
+
+/// The outputs in which the stage writes files, as the request's schema lists them (outputs, x-stages).
+const std::vector<std::string>& formats_of(const Stage& stage);
 
 /// Null where there is no stage of this name.
 const Stage* find_stage(std::string_view name);
