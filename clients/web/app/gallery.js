@@ -5,7 +5,7 @@ import { fact_rows, label_of, names_by_digest, summary, versions_by_path, warnin
 import { Cut, Facts, Loading, ProblemNote, Warnings } from './parts.js';
 import { file_names } from './uploads/uploads.js';
 import { UploadPanel } from './uploads/upload_panel.js';
-import { name_from_file } from './words.js';
+import { name_from_file } from './name_text.js';
 
 /**
  * { items, more, names: { sha256: [path] }, versions: { path: version }, files: { sha256: file name }, problem,

@@ -1,6 +1,6 @@
 // Small pieces of pages.
 import { html } from '../vendor/preact.js';
-import { most_shown } from './words.js';
+import { most_shown } from './list_pages.js';
 
 /** A failure, read out at once. */
 export function ProblemNote({ problem }) {

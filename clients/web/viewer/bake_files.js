@@ -2,7 +2,7 @@
 // a service that anyone may write to, so that every number is compared with the size of what it describes.
 
 import { request_by_names } from '../app/bake/by_names.js';
-import { from_half } from './half.js';
+import { from_half } from './half_float.js';
 
 const needed = ['strands.json', 'strands.bin', 'maps.json', 'maps.f16'];
 

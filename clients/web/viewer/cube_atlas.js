@@ -4,7 +4,7 @@
 // WebGL 2 has no cube map arrays, a sampler cannot be chosen by a computed number, and three.js negates x in its cube
 // look-ups: hence no cube samplers. Faces are those of core/environment/cube_map.h.
 import { face_direction, texel_of } from '../app/result/cube.js';
-import { from_half, to_half } from './half.js';
+import { from_half, to_half } from './half_float.js';
 
 export const atlas_columns = 3,
     atlas_rows = 2;

@@ -96,7 +96,7 @@ export function compose_request(request, edit) {
 }
 
 /** What a request does to its environment, for people: a list. */
-export function lighting_words(request) {
+export function lighting_text(request) {
     const { rotation_deg, exposure_stops, tint, lights } = { ...no_edit(), ...request.irradiance };
     const [x, y, z] = rotation_deg.map(angle => `${Number(angle.toFixed(1))}°`);
     const words = [];

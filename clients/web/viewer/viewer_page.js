@@ -13,7 +13,7 @@ import { load_bake } from './bake_files.js';
 import { HairPanel, LightsPanel, SidesPanel, SkyPanel } from './controls.js';
 import { Slider } from './fields.js';
 import { HairView, default_look, default_side, most_stops } from './hair_view.js';
-import { compose_request, is_edited, lighting_words, no_edit } from './lighting_edit.js';
+import { compose_request, is_edited, lighting_text, no_edit } from './lighting_edit.js';
 import { listen_for_orbit } from './orbit_input.js';
 
 const css = new URL('viewer.css', import.meta.url).href;
@@ -74,7 +74,7 @@ export function ViewerPage({ left, right, api, words = bake => bake.id.slice(0, 
     useEffect(() => view.current?.set_display_stops(stops), [stops]);
 
     const names = bakes.map(bake =>
-        [words(bake), `${bake.maps.count - 1} specular maps`, ...lighting_words(bake.request)].join(', '),
+        [words(bake), `${bake.maps.count - 1} specular maps`, ...lighting_text(bake.request)].join(', '),
     );
     const ready = bakes.length > 0,
         edited = bakes[sides[0].bake]; // the one on the left is what an edit starts from

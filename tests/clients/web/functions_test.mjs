@@ -12,7 +12,7 @@ import {
     reference_to,
     with_value,
 } from '../../../clients/web/app/bake/request.js';
-import { defaults_of, faults, fields_of, range_words } from '../../../clients/web/app/bake/schema.js';
+import { defaults_of, faults, fields_of, range_text } from '../../../clients/web/app/bake/schema.js';
 import { names_by_digest, versions_by_path, warnings } from '../../../clients/web/app/input_facts.js';
 import { wait_ms_of } from '../../../clients/web/app/patience.js';
 import {
@@ -23,11 +23,12 @@ import {
     texel_direction,
     texel_of,
 } from '../../../clients/web/app/result/cube.js';
-import { half_values } from '../../../clients/web/app/result/half.js';
 import { srgb_byte } from '../../../clients/web/app/result/map_set.js';
 import { read_route } from '../../../clients/web/app/routes.js';
-import { from_half } from '../../../clients/web/viewer/half.js';
-import { bytes_words, name_from_file, number_words, seconds_words } from '../../../clients/web/app/words.js';
+import { from_half, half_values } from '../../../clients/web/viewer/half_float.js';
+import { name_from_file } from '../../../clients/web/app/name_text.js';
+import { bytes_text, number_text } from '../../../clients/web/app/number_text.js';
+import { duration_text } from '../../../clients/web/app/time_text.js';
 
 const config = new URL('../../../config/', import.meta.url);
 const schema = JSON.parse(readFileSync(new URL('request.schema.json', config)));
@@ -113,7 +114,7 @@ test('every field of the schema has a help text, and what is a number has a rang
     for (const { path, schema: field } of fields) {
         assert.ok(field.description?.length > 5, path.join('.'));
         if (field.type === 'number' || field.type === 'integer' || field.anyOf)
-            assert.match(range_words(field), /^(more than )?[-\d.e+]+,? (up )?to /, path.join('.'));
+            assert.match(range_text(field), /^(more than )?[-\d.e+]+,? (up )?to /, path.join('.'));
     }
 });
 
@@ -179,16 +180,16 @@ test('warnings tell of pixels that a bake refuses and of a low range', () => {
 });
 
 test('numbers, sizes, times and names read well', () => {
-    assert.deepEqual([0, 999, 1500, 24100128, 999.6e6].map(bytes_words), [
+    assert.deepEqual([0, 999, 1500, 24100128, 999.6e6].map(bytes_text), [
         '0 bytes',
         '999 bytes',
         '1.5 kB',
         '24 MB',
         '1.0 GB',
     ]);
-    assert.deepEqual([0.1234, 5.04, 62, 600, 7200].map(seconds_words), ['123 ms', '5.0 s', '62 s', '10 min', '2.0 h']);
+    assert.deepEqual([0.1234, 5.04, 62, 600, 7200].map(duration_text), ['123 ms', '5.0 s', '62 s', '10 min', '2.0 h']);
     assert.deepEqual(
-        [0, 0.00001234, 3.14159, 123456, 1e9].map(x => number_words(x)),
+        [0, 0.00001234, 3.14159, 123456, 1e9].map(x => number_text(x)),
         ['0', '1.234e-5', '3.142', '123500', '1.000e+9'],
     );
     assert.equal(name_from_file('../My <sky> (1k).hdr'), 'My-sky-1k');

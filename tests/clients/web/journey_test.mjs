@@ -6,7 +6,7 @@ import { existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync }
 import { tmpdir } from 'node:os';
 import { basename, join, resolve } from 'node:path';
 import { after, before, test } from 'node:test';
-import { from_half } from '../../../clients/web/viewer/half.js';
+import { from_half } from '../../../clients/web/viewer/half_float.js';
 import { launch, open_page, tests } from './browser.mjs';
 import { Daemon, hairbake, patience_ms } from './daemon.mjs';
 

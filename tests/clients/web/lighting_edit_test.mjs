@@ -1,10 +1,10 @@
 // The arithmetic behind the viewer: rotations and requests, polynomials, half floats. No browser.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { from_half, to_half } from '../../../clients/web/viewer/half.js';
+import { from_half, to_half } from '../../../clients/web/viewer/half_float.js';
 import {
     compose_request,
-    lighting_words,
+    lighting_text,
     multiply,
     no_edit,
     rotation_degrees,
@@ -158,8 +158,8 @@ test('Every half float survives being read and written, and what lies between go
 });
 
 test('A request says in words what it does to its environment', () => {
-    const words = irradiance => lighting_words({ irradiance });
-    assert.deepEqual(lighting_words({}), []);
+    const words = irradiance => lighting_text({ irradiance });
+    assert.deepEqual(lighting_text({}), []);
     assert.deepEqual(words(no_edit()), []);
     assert.deepEqual(words({ rotation_deg: [0, -30.04, 0], exposure_stops: -1.5 }), [
         'sky turned by -30°',

@@ -1,7 +1,7 @@
 // One field of the request as the schema describes it: name, unit, range, a line of help, and what is wrong with it.
 import { html, useState } from '../../vendor/preact.js';
-import { title_words } from '../words.js';
-import { number_part, range_words, takes_null, word_of } from './schema.js';
+import { title_text } from '../name_text.js';
+import { number_part, range_text, takes_null, word_of } from './schema.js';
 
 const to_number = text => (text.trim() === '' ? null : Number(text));
 const shown = value => (typeof value === 'number' ? String(value) : '');
@@ -31,7 +31,7 @@ function NumberOrWord({ id, schema, value, on_change, described, invalid }) {
         <${NumberInput} id=${id} schema=${schema} value=${is_word ? null : value} on_change=${on_change}
             described=${described} invalid=${invalid} />
         <label><input type="checkbox" checked=${is_word}
-            onChange=${event => on_change(event.target.checked ? word : first)} /> ${title_words(word)}</label>
+            onChange=${event => on_change(event.target.checked ? word : first)} /> ${title_text(word)}</label>
     </div>`;
 }
 
@@ -113,14 +113,14 @@ function Select({ id, schema, value, on_change, described, invalid }) {
 }
 
 function Help({ id, schema, fault }) {
-    const range = schema.enum || schema.items?.enum ? '' : range_words(schema); // lists show what there is
+    const range = schema.enum || schema.items?.enum ? '' : range_text(schema); // lists show what there is
     return html`<small id=${`${id}-help`}>${schema.description}${range && ` (${range}.)`}</small>
         ${fault && html`<small class="problem" id=${`${id}-fault`}>${fault.words}</small>`}`;
 }
 
 /** "Face size, texels", "SH bands: diffuse". */
 function title_of(path, unit) {
-    const words = path.slice(path.length > 2 ? -2 : -1).map(title_words);
+    const words = path.slice(path.length > 2 ? -2 : -1).map(title_text);
     const title = words.length > 1 ? `${words[0]}: ${words[1].toLowerCase()}` : words[0];
     return unit && !title.toLowerCase().includes(unit) ? `${title}, ${unit}` : title;
 }

@@ -2,7 +2,9 @@
 import { html, useEffect, useState } from '../../vendor/preact.js';
 import { use_app, use_watch } from '../hooks.js';
 import { ProblemNote, State } from '../parts.js';
-import { count_words, seconds_words, title_words } from '../words.js';
+import { title_text } from '../name_text.js';
+import { count_text } from '../number_text.js';
+import { duration_text } from '../time_text.js';
 
 export const has_ended = ({ state }) => state === 'done' || state === 'failed' || state === 'cancelled';
 export const watch_ms = 700;
@@ -12,12 +14,12 @@ const stage_words = { transmittance: 'Transmittance', irradiance: 'Irradiance ma
 function phase_words(stage) {
     if (stage.state === 'done') return 'done';
     if (stage.state !== 'running') return stage.state;
-    return stage.phase ? title_words(stage.phase) : 'starting';
+    return stage.phase ? title_text(stage.phase) : 'starting';
 }
 
 function Stage({ stage }) {
     const percent = Math.round(100 * stage.fraction);
-    const tries = stage.attempts > 1 ? `, started ${count_words(stage.attempts, 'time')}` : '';
+    const tries = stage.attempts > 1 ? `, started ${count_text(stage.attempts, 'time')}` : '';
     return html`<div class="stage-progress">
         <p><strong>${stage_words[stage.kind] ?? stage.kind}</strong>: ${phase_words(stage)}, ${percent} %${tries}</p>
         <progress value=${stage.fraction} max="1" aria-label=${`${stage_words[stage.kind] ?? stage.kind}`}></progress>
@@ -63,7 +65,7 @@ export function use_bake(id) {
 }
 
 export function Progress({ bake, again }) {
-    const left = bake.seconds_left ? `about ${seconds_words(bake.seconds_left)} left` : '';
+    const left = bake.seconds_left ? `about ${duration_text(bake.seconds_left)} left` : '';
     return html`<section aria-label="Progress">
         <p><${State} state=${bake.state} /> ${!has_ended(bake) && html`<span>
             ${Math.round(100 * bake.fraction)} % ${left}</span>`}</p>

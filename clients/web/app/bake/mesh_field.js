@@ -2,7 +2,7 @@
 import { html, useEffect, useState } from '../../vendor/preact.js';
 import { use_app, use_list } from '../hooks.js';
 import { Cut } from '../parts.js';
-import { short_digest, title_words } from '../words.js';
+import { short_digest, title_text } from '../name_text.js';
 
 const words_after = words => (words ? `: ${words}` : '');
 
@@ -44,7 +44,7 @@ export function MeshField({ name, schema, value, on_change, on_wait, fault }) {
     const id = `field-${name}`;
     const described = `${id}-help${fault ? ` ${id}-fault` : ''}`;
     const known = (items ?? []).map(({ path }) => `name:${path}`);
-    return html`<div class="field"><label for=${id}>${title_words(name)}</label>
+    return html`<div class="field"><label for=${id}>${title_text(name)}</label>
         <select id=${id} aria-describedby=${described} aria-invalid=${fault ? 'true' : null} onChange=${choose}>
             <option value="" selected=${!value}>none</option>
             ${value && !known.includes(value) && html`<option value=${value} selected>

@@ -2,18 +2,18 @@
 import { html, useEffect, useState } from '../../vendor/preact.js';
 import { use_app } from '../hooks.js';
 import { ProblemNote } from '../parts.js';
-import { count_words } from '../words.js';
+import { count_text } from '../number_text.js';
 
 const stage_line = ({ transmittance, irradiance }) =>
     [
-        count_words(transmittance, 'transmittance'),
-        count_words(irradiance, 'set of irradiance maps', 'sets of irradiance maps'),
+        count_text(transmittance, 'transmittance'),
+        count_text(irradiance, 'set of irradiance maps', 'sets of irradiance maps'),
     ].join(', ');
 
 const is_done = ({ bakes, done_bakes }) => bakes === done_bakes;
 
-const forecast_words = forecast =>
-    `${count_words(forecast.bakes, 'bake')}: ` +
+const forecast_text = forecast =>
+    `${count_text(forecast.bakes, 'bake')}: ` +
     (is_done(forecast)
         ? 'all of them are done already.'
         : `reused are ${stage_line(forecast.reused_stages)}; computed ${stage_line(forecast.computed_stages)}.`);
@@ -40,7 +40,7 @@ export function Rebake({ request, label = 'Re-bake' }) {
             forecast => {
                 if (!live) return;
                 set_state({ body, forecast });
-                announce(forecast_words(forecast));
+                announce(forecast_text(forecast));
             },
             problem => live && set_state({ body, problem }),
         );
@@ -63,7 +63,7 @@ export function Rebake({ request, label = 'Re-bake' }) {
             state.forecast &&
             html`<${Forecast} forecast=${state.forecast} /><button onClick=${confirm}
                 disabled=${state.busy} aria-busy=${state.busy ? 'true' : null}>
-                ${is_done(state.forecast) ? 'Show' : label} ${count_words(state.forecast.bakes, 'bake')}</button>`
+                ${is_done(state.forecast) ? 'Show' : label} ${count_text(state.forecast.bakes, 'bake')}</button>`
         }
     </section>`;
 }

@@ -1,6 +1,6 @@
 // The request's JSON schema: what a form shows of it, and whether a value follows it. Of JSON Schema it knows what
 // config/request.schema.json uses.
-import { number_words } from '../words.js';
+import { number_text } from '../number_text.js';
 
 /** { path: ['irradiance', 'face_size'], schema } of every field below `schema` that is no object of fields itself. */
 export function fields_of(schema, path = []) {
@@ -32,7 +32,7 @@ export const takes_null = schema => types_of(schema).includes('null');
 export const word_of = schema => (schema.anyOf ?? []).find(part => 'const' in part)?.const;
 
 /** "16 to 4096", "more than 0, up to 1", "one of a, b". */
-export function range_words(schema) {
+export function range_text(schema) {
     if (schema.enum) return `one of ${schema.enum.join(', ')}`;
     const part = number_part(schema);
     if (part) {
@@ -45,14 +45,14 @@ export function range_words(schema) {
         return `${low} ${range_number(part.maximum)}${whole}${word ? `, or ${word}` : ''}`;
     }
     if (schema.type === 'array' && number_part(schema.items ?? {}))
-        return `${schema.minItems} numbers, each ${range_words(schema.items)}`;
+        return `${schema.minItems} numbers, each ${range_text(schema.items)}`;
     return '';
 }
 
 // 9007199254740991 as it is: a limit is not rounded.
 function range_number(value) {
     if (Math.abs(value) >= 1e16) return value.toExponential().replace('+', '');
-    return Number.isInteger(value) ? String(value) : number_words(value);
+    return Number.isInteger(value) ? String(value) : number_text(value);
 }
 
 function type_fits(type, value) {
@@ -75,7 +75,7 @@ function number_fits(schema, value) {
     );
 }
 
-function in_words(value) {
+function as_text(value) {
     return value === null ? 'empty' : JSON.stringify(value);
 }
 
@@ -84,15 +84,15 @@ export function faults(schema, value, path = '') {
     const wrong = words => [{ path, words }];
     const types = types_of(schema);
     if (types.length && !types.some(type => type_fits(type, value)))
-        return wrong(`is ${in_words(value)}; allowed is ${range_words(schema) || types.join(' or ')}`);
+        return wrong(`is ${as_text(value)}; allowed is ${range_text(schema) || types.join(' or ')}`);
     if (schema.enum && !schema.enum.some(one => same(one, value)))
-        return wrong(`is ${in_words(value)}; allowed is ${range_words(schema)}`);
+        return wrong(`is ${as_text(value)}; allowed is ${range_text(schema)}`);
     if ('const' in schema && !same(schema.const, value))
-        return wrong(`is ${in_words(value)}; allowed is ${schema.const}`);
+        return wrong(`is ${as_text(value)}; allowed is ${schema.const}`);
     if (schema.anyOf && !schema.anyOf.some(part => faults(part, value).length === 0))
-        return wrong(`is ${in_words(value)}; allowed is ${range_words(schema)}`);
+        return wrong(`is ${as_text(value)}; allowed is ${range_text(schema)}`);
     if (typeof value === 'number' && !number_fits(schema, value))
-        return wrong(`is ${value}; allowed is ${range_words(schema)}`);
+        return wrong(`is ${value}; allowed is ${range_text(schema)}`);
     if (typeof value === 'string' && value.length < (schema.minLength ?? 0)) return wrong('is empty');
     if (Array.isArray(value)) return array_faults(schema, value, path);
     if (schema.properties && value !== null && typeof value === 'object') return object_faults(schema, value, path);

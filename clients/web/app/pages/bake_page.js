@@ -17,7 +17,8 @@ import { faults, fields_of } from '../bake/schema.js';
 import { use_inputs } from '../gallery.js';
 import { use_app } from '../hooks.js';
 import { Loading, ProblemNote } from '../parts.js';
-import { count_words, title_words } from '../words.js';
+import { title_text } from '../name_text.js';
+import { count_text } from '../number_text.js';
 
 const stages = ['strand', 'transmittance', 'irradiance'];
 
@@ -38,7 +39,7 @@ function Stage({ name, schema, values, base, wrong, on_change }) {
     const note = [changed.length && `${changed.length} changed`, bad.length && `${bad.length} to correct`]
         .filter(Boolean)
         .join(', ');
-    const title = title_words(name) + (note && `: ${note}`);
+    const title = title_text(name) + (note && `: ${note}`);
     return html`<${Fold} title=${title} faulty=${bad.length > 0}>
         <p>${schema.properties[name].description}</p>
         <div class="fields">
@@ -71,7 +72,7 @@ function fault_of(wrong, path) {
 /** What this page finds wrong by itself, by field: words. `waits`: by field, the file that is not there yet. */
 function faults_of_form(schema, request, waits) {
     const wrong = Object.fromEntries(
-        faults(schema, request).map(({ path, words }) => [path, `${title_words(path)} ${words}.`]),
+        faults(schema, request).map(({ path, words }) => [path, `${title_text(path)} ${words}.`]),
     );
     if (!request.hair && !request.environment) wrong.hair = 'A hair model, an environment, or one of each is needed.';
     for (const [name, words] of Object.entries(waits)) if (words) wrong[name] = words;
@@ -138,7 +139,7 @@ function Form({ schema, presets, query }) {
         set_problem(null); // what the service refused may be there by now: it is asked again
         const count = Object.keys(own_faults).length;
         if (count) {
-            announce(`${count_words(count, 'field')} to correct.`);
+            announce(`${count_text(count, 'field')} to correct.`);
             show_fault();
             return;
         }

@@ -4,7 +4,7 @@ import { BakeTable } from '../bake/bake_table.js';
 import { use_inputs } from '../gallery.js';
 import { use_app, use_watch } from '../hooks.js';
 import { Cut, Facts, Loading, ProblemNote } from '../parts.js';
-import { most_shown } from '../words.js';
+import { most_shown } from '../list_pages.js';
 
 const open = ({ states }) => states.queued + states.running;
 const has_ended = batch => open(batch) === 0;

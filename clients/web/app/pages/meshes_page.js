@@ -7,7 +7,8 @@ import { label_of } from '../input_facts.js';
 import { Cut, Heads, Loading, ProblemNote } from '../parts.js';
 import { UploadPanel } from '../uploads/upload_panel.js';
 import { file_names } from '../uploads/uploads.js';
-import { name_from_file, time_words } from '../words.js';
+import { name_from_file } from '../name_text.js';
+import { time_text } from '../time_text.js';
 
 /** The meshes that this page has sent and that no name points at. */
 function Nameless({ named, on_named }) {
@@ -29,7 +30,7 @@ function Named({ names }) {
         <tbody>${names.map(
             ({ path, version, sha256, created }) => html`<tr key=${path}>
             <td><a href=${`#/names/mesh/${path}`}>${path}</a></td><td>${version}</td>
-            <td>${label_of(sha256, {}, files)}</td><td>${time_words(created)}</td></tr>`,
+            <td>${label_of(sha256, {}, files)}</td><td>${time_text(created)}</td></tr>`,
         )}</tbody>
     </table></div>`;
 }

@@ -8,14 +8,15 @@ import { use_app, use_json, use_list } from '../hooks.js';
 import { label_of } from '../input_facts.js';
 import { Cut, Heads, Loading, ProblemNote } from '../parts.js';
 import { file_names } from '../uploads/uploads.js';
-import { count_words, time_words } from '../words.js';
+import { count_text } from '../number_text.js';
+import { time_text } from '../time_text.js';
 
 function Versions({ versions, inputs }) {
     return html`<div class="scroll" tabindex="0" role="region" aria-label="Versions"><table class="striped">
         <${Heads} titles=${['Version', 'File', 'Note', 'By', 'When']} />
         <tbody>${versions.map(
             one => html`<tr key=${one.version}><td>${one.version}</td><td>${label_of(one.sha256, {}, inputs.files)}</td>
-            <td>${one.note}</td><td>${one.token}</td><td>${time_words(one.created)}</td></tr>`,
+            <td>${one.note}</td><td>${one.token}</td><td>${time_text(one.created)}</td></tr>`,
         )}</tbody>
     </table></div>`;
 }
@@ -67,13 +68,13 @@ function BakeAgain({ name, bakes }) {
                 const newest = asked_by(bake, name).map(field => [field, `name:${name.path}@${name.version}`]);
                 await api.post('/v1/bakes', { ...request, ...Object.fromEntries(newest) });
             }
-            announce(`${count_words(bakes.length, 'bake')} asked for.`);
+            announce(`${count_text(bakes.length, 'bake')} asked for.`);
             location.hash = '#/bakes';
         } catch (failure) {
             set_problem(failure);
         }
     };
-    return html`<button onClick=${again}>Bake ${count_words(bakes.length, 'bake')} with version ${name.version}
+    return html`<button onClick=${again}>Bake ${count_text(bakes.length, 'bake')} with version ${name.version}
         </button><${ProblemNote} problem=${problem} />`;
 }
 
@@ -90,7 +91,7 @@ function Followers({ kind, name }) {
     const again = more ? { name: name.path } : { bakes: outdated.map(({ id }) => id) };
     return html`<div>
         <p id="followers">
-            ${more && 'At least '}${count_words(bakes.length, 'bake')} asked for this name, ${old.length} of them for an
+            ${more && 'At least '}${count_text(bakes.length, 'bake')} asked for this name, ${old.length} of them for an
             older version.</p>
         ${
             kind === 'environment' &&

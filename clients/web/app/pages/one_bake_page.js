@@ -1,6 +1,6 @@
 // One bake: progress until it has ended, then its result.
 import { html, useEffect, useState } from '../../vendor/preact.js';
-import { bake_words } from '../bake/bake_table.js';
+import { bake_title } from '../bake/bake_table.js';
 import { Progress, use_bake } from '../bake/live_bake.js';
 import { use_inputs } from '../gallery.js';
 import { Loading, ProblemNote } from '../parts.js';
@@ -24,7 +24,7 @@ export default function OneBakePage({ path }) {
     const environments = use_inputs('environment');
     if (!bake) return problem ? html`<${ProblemNote} problem=${problem} />` : html`<${Loading} what="the bake" />`;
     return html`<div>
-        <p>${bake_words(bake, models, environments)}</p>
+        <p>${bake_title(bake, models, environments)}</p>
         <${ProblemNote} problem=${problem} />
         <${Progress} bake=${bake} again=${again} />
         ${bake.state === 'done' && html`<${Result} bake=${bake} />`}

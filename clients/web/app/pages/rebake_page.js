@@ -6,7 +6,7 @@ import { use_inputs } from '../gallery.js';
 import { use_list } from '../hooks.js';
 import { label_of } from '../input_facts.js';
 import { Cut, ProblemNote } from '../parts.js';
-import { count_words } from '../words.js';
+import { count_text } from '../number_text.js';
 
 function OldEnvironment({ inputs, value, on_change }) {
     return html`<label>Environment <select onChange=${event => on_change(event.target.value)}>
@@ -41,7 +41,7 @@ export default function RebakePage({ query }) {
     const [target, set_target] = useState('');
     const source = source_of(how, { bakes, replaces, name });
     const ways = [
-        ...(bakes.length ? [['bakes', `The ${count_words(bakes.length, 'chosen bake')}`]] : []),
+        ...(bakes.length ? [['bakes', `The ${count_text(bakes.length, 'chosen bake')}`]] : []),
         ['replaces', 'Every bake under an environment'],
         ['name', 'Every bake that asked for an environment by name'],
     ];

@@ -1,7 +1,7 @@
 // The files of a bake, and who reads which format.
 import { html, useState } from '../../vendor/preact.js';
 import { Heads } from '../parts.js';
-import { bytes_words } from '../words.js';
+import { bytes_text } from '../number_text.js';
 
 // By the end of a name; the first that fits.
 const readers = [
@@ -34,7 +34,7 @@ export function Downloads({ files, contents }) {
             <tbody>${shown.map(
                 ({ name, href, bytes, sha256 }) => html`<tr key=${name}>
                 <td><a href=${href} download=${name} title=${sha256 ? `SHA-256 ${sha256}` : null}>${name}</a></td>
-                <td class="number">${bytes === undefined ? '' : bytes_words(bytes)}</td><td>${contents[name] ?? ''}
+                <td class="number">${bytes === undefined ? '' : bytes_text(bytes)}</td><td>${contents[name] ?? ''}
                     </td><td>${readers_of(name)}</td>
             </tr>`,
             )}</tbody>

@@ -2,8 +2,8 @@
 import { html, useEffect, useRef, useState } from '../../vendor/preact.js';
 import { use_app } from '../hooks.js';
 import { Facts, Loading, ProblemNote } from '../parts.js';
-import { count_words, number_words } from '../words.js';
-import { half_values } from './half.js';
+import { count_text, number_text } from '../number_text.js';
+import { half_values } from '../../viewer/half_float.js';
 
 const bins = 50;
 
@@ -139,10 +139,10 @@ function Chart({ bake }) {
     return html`<div>
         <div class="chart" ref=${parent} role="img" aria-label="Histogram of A; its numbers stand below"></div>
         <${Facts} rows=${[
-            ['Vertices', count_words(count, 'vertex', 'vertices')],
-            ['Mean of A', number_words(numbers.mean)],
-            ['Median', number_words(numbers.median)],
-            ['Nine tenths lie in', `${number_words(numbers.low)} to ${number_words(numbers.high)}`],
+            ['Vertices', count_text(count, 'vertex', 'vertices')],
+            ['Mean of A', number_text(numbers.mean)],
+            ['Median', number_text(numbers.median)],
+            ['Nine tenths lie in', `${number_text(numbers.low)} to ${number_text(numbers.high)}`],
         ]} />
     </div>`;
 }

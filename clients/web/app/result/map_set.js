@@ -1,5 +1,5 @@
 // The irradiance maps of a bake as maps.f16 and maps.json hold them.
-import { from_half } from '../../viewer/half.js';
+import { from_half } from '../../viewer/half_float.js';
 
 export class MapSet {
     /** page: maps.json; buffer: maps.f16 */

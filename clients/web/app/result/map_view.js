@@ -1,9 +1,9 @@
 // The maps as pictures: net or lat-long, any of them, at any exposure, with the value under the pointer.
 import { html, useEffect, useMemo, useRef, useState } from '../../vendor/preact.js';
-import { from_half } from '../../viewer/half.js';
+import { from_half } from '../../viewer/half_float.js';
 import { use_app } from '../hooks.js';
 import { Facts, Loading, ProblemNote } from '../parts.js';
-import { number_words } from '../words.js';
+import { number_text } from '../number_text.js';
 import { face_names, latlong_direction, layout_of, texel_direction, texel_of } from './cube.js';
 import { load_maps, srgb_byte } from './map_set.js';
 
@@ -61,9 +61,9 @@ function Readout({ set, m, texel }) {
     const value = set.value(m, texel);
     const direction = texel_direction(texel, set.face_size);
     return html`<div class="readout"><${Facts} rows=${[
-        ['Value, linear RGB', html`<output id="texel-value">${value.map(x => number_words(x, 5)).join(', ')}</output>`],
+        ['Value, linear RGB', html`<output id="texel-value">${value.map(x => number_text(x, 5)).join(', ')}</output>`],
         ['Texel', `${face_names[texel.face]}, column ${texel.i}, row ${texel.j}`],
-        ['Tangent', direction.map(x => number_words(x, 3)).join(', ')],
+        ['Tangent', direction.map(x => number_text(x, 3)).join(', ')],
         ['Units', set.units],
     ]} /></div>`;
 }

@@ -1,7 +1,7 @@
 // Where files are dropped or picked, and how far each is.
 import { html, useEffect, useRef, useState } from '../../vendor/preact.js';
 import { use_app } from '../hooks.js';
-import { bytes_words } from '../words.js';
+import { bytes_text } from '../number_text.js';
 
 function use_jobs(kind) {
     const { uploads } = use_app();
@@ -13,7 +13,7 @@ function use_jobs(kind) {
 const phase_words = {
     waiting: () => 'waits for the files before it',
     digesting: () => 'its digest is being made, to see whether the service has it',
-    sending: job => `${bytes_words(job.done)} of ${bytes_words(job.file.size)} sent`,
+    sending: job => `${bytes_text(job.done)} of ${bytes_text(job.file.size)} sent`,
     reading: () => 'the service reads it',
     stored: job => (job.known ? 'the service had it already: nothing was sent' : 'stored'),
     failed: job => job.problem,
