@@ -1,6 +1,6 @@
 // The frame around every page: navigation, token form, announcements.
 import { html, render, useEffect, useMemo, useRef, useState } from '../vendor/preact.js';
-import { make_api } from './api.js';
+import { Api } from './api.js';
 import { AppContext } from './hooks.js';
 import { ProblemNote } from './parts.js';
 import { page_of, read_route } from './routes.js';
@@ -75,7 +75,7 @@ function App() {
     const [locked, set_locked] = useState(false);
     const [message, set_message] = useState('');
     const app = useMemo(() => {
-        const api = make_api(() => set_locked(true));
+        const api = new Api(() => set_locked(true));
         const announce = text => set_message(text);
         return { api, announce, uploads: new Uploads(api, announce) };
     }, []);

@@ -14,7 +14,7 @@ import {
 } from '../../../clients/web/app/bake/request.js';
 import { defaults_of, faults, fields_of, range_text } from '../../../clients/web/app/bake/schema.js';
 import { names_by_digest, versions_by_path, warnings } from '../../../clients/web/app/input_facts.js';
-import { wait_ms_of } from '../../../clients/web/app/patience.js';
+import { wait_ms_of } from '../../../clients/web/app/retry.js';
 import {
     face_direction,
     latlong_direction,
@@ -143,7 +143,7 @@ test('a preset and a change make a request of what differs', () => {
 });
 
 test('what the schema does not allow is named by field, with what is allowed', () => {
-    const wrong = request => faults(schema, request).map(({ path, words }) => `${path} ${words}`);
+    const wrong = request => faults(schema, request).map(({ path, message }) => `${path} ${message}`);
     assert.deepEqual(wrong({ irradiance: { face_size: 3 } }), [
         'irradiance.face_size is 3; allowed is 4 to 256, whole',
     ]);

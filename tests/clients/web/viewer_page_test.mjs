@@ -18,10 +18,10 @@ const html = `<!doctype html><html lang="en"><head><meta charset="utf-8"><title>
 <body><main class="container-fluid"><h1>Viewer</h1><div id="place"></div></main>
 <script type="module" src="/mount.js"></script></body></html>`;
 const mount = `import { html, render } from '/vendor/preact.js';
-import { make_api } from '/app/api.js';
+import { Api } from '/app/api.js';
 import { ViewerPage } from '/viewer/viewer_page.js';
 const place = document.querySelector('#place');
-const api = make_api(() => (window.locked = true));
+const api = new Api(() => (window.locked = true));
 const show = () => {
     const [left, right] = location.hash.replace(/^#\\/(view\\/)?/, '').split('/');
     render(html\`<\${ViewerPage} left=\${left} right=\${right} api=\${api} />\`, place);

@@ -1,6 +1,6 @@
 // Sends one file in pieces that go on after a lost connection or a reload (tus-js-client remembers upload addresses in
 // localStorage, by the file's digest).
-import { is_turned_away, pause, wait_ms_of } from '../patience.js';
+import { is_turned_away, pause, wait_ms_of } from '../retry.js';
 
 const piece = 8 << 20;
 /** Before one try after the other; the count begins anew when something was sent. */

@@ -1,5 +1,5 @@
 // All files that are being sent, one after the other; they go on while pages change.
-import { is_turned_away, pause } from '../patience.js';
+import { is_turned_away, pause } from '../retry.js';
 import { forget_file, keep_file, kept_file, kept_files } from './kept_files.js';
 import { delays_ms, end_upload, send_file } from './tus_upload.js';
 
