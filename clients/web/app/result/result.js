@@ -1,44 +1,18 @@
-// What a finished bake holds.
+// The page of a finished bake: its maps, transmittance, accuracy, timings and files.
 import { html } from '../../vendor/preact.js';
 import { use_app, use_json } from '../hooks.js';
-import { Facts, Loading, ProblemNote, Warnings } from '../parts.js';
 import { title_text } from '../name_text.js';
-import { bytes_text, count_text, number_text } from '../number_text.js';
+import { bytes_text } from '../number_text.js';
+import { Facts, Loading, ProblemNote, Warnings } from '../parts.js';
 import { duration_text } from '../time_text.js';
+import { accuracy_rows } from './accuracy.js';
 import { Downloads } from './downloads.js';
 import { Histogram } from './histogram.js';
 import { MapView } from './map_view.js';
 
-const interval = ([low, high]) => `${number_text(low, 3)} to ${number_text(high, 3)}`;
-
-function ErrorBars({ manifest }) {
-    const bar = manifest.error_bar;
-    const maps = manifest.irradiance;
-    const rows = [];
-    if (bar?.vertices === 0)
-        rows.push(['A against traced strands', 'not measured: every vertex drawn lies inside another strand']);
-    else if (bar)
-        rows.push(
-            ['A against traced strands, RMSE', `${number_text(bar.rmse, 3)} (95 %: ${interval(bar.ci95.rmse)})`],
-            ['Bias', `${number_text(bar.bias, 3)} (95 %: ${interval(bar.ci95.bias)})`],
-            [
-                'Measured with',
-                `${count_text(bar.vertices, 'vertex', 'vertices')}, ${count_text(bar.directions, 'direction')} each`,
-            ],
-        );
-    if (maps?.interpolation_bound_relative !== undefined)
-        rows.push([
-            'Between specular maps, at most',
-            `${number_text(100 * maps.interpolation_bound_relative, 3)} % of the largest value`,
-        ]);
-    if (maps?.sh)
-        rows.push(
-            ...Object.entries(maps.sh)
-                .filter(([, value]) => typeof value === 'number')
-                .map(([name, value]) => [title_text(name), number_text(value, 3)]),
-        );
-    if (rows.length === 0) return null;
-    return html`<h2>How good it is</h2><${Facts} rows=${rows} />`;
+function Accuracy({ manifest }) {
+    const rows = accuracy_rows(manifest);
+    return rows.length > 0 && html`<h2>Accuracy</h2><${Facts} rows=${rows} />`;
 }
 
 function Timings({ manifest }) {
@@ -85,7 +59,7 @@ export function Result({ bake }) {
         ${bake.model && html`<h2>Transmittance A</h2>${has('strands.bin') ? html`<${Histogram}
             bake=${bake.id} />` : without_raw}`}
         <${Previews} bake=${bake} manifest=${manifest} />
-        <${ErrorBars} manifest=${manifest} />
+        <${Accuracy} manifest=${manifest} />
         <${Timings} manifest=${manifest} />
         <h2>Files</h2>
         <${Downloads} files=${bake.files} contents=${contents} />
