@@ -5,7 +5,8 @@ import { label_of } from '../input_facts.js';
 import { Heads, State } from '../parts.js';
 import { short_digest } from '../name_text.js';
 import { duration_text, time_text } from '../time_text.js';
-import { CancelButton, has_ended, watch_ms } from './live_bake.js';
+import { CancelButton } from './cancel_button.js';
+import { has_ended, watch_ms } from './live_bake.js';
 
 /** Of a running bake: how far it is. */
 function Running({ bake }) {

@@ -1,7 +1,8 @@
 // One bake: progress until it has ended, then its result.
 import { html, useEffect, useState } from '../../vendor/preact.js';
 import { bake_title } from '../bake/bake_table.js';
-import { Progress, use_bake } from '../bake/live_bake.js';
+import { BakeProgress } from '../bake/bake_progress.js';
+import { use_bake } from '../bake/live_bake.js';
 import { use_inputs } from '../gallery.js';
 import { Loading, ProblemNote } from '../parts.js';
 
@@ -26,7 +27,7 @@ export default function OneBakePage({ path }) {
     return html`<div>
         <p>${bake_title(bake, models, environments)}</p>
         <${ProblemNote} problem=${problem} />
-        <${Progress} bake=${bake} again=${again} />
+        <${BakeProgress} bake=${bake} on_change=${again} />
         ${bake.state === 'done' && html`<${Result} bake=${bake} />`}
         <details><summary>The request</summary><pre tabindex="0">${JSON.stringify(bake.request, null, 2)}</pre>
             </details>
