@@ -115,7 +115,7 @@ function Select({ id, schema, value, on_change, described, invalid }) {
 function Help({ id, schema, fault }) {
     const range = schema.enum || schema.items?.enum ? '' : range_text(schema); // lists show what there is
     return html`<small id=${`${id}-help`}>${schema.description}${range && ` (${range}.)`}</small>
-        ${fault && html`<small class="problem" id=${`${id}-fault`}>${fault.words}</small>`}`;
+        ${fault && html`<small class="problem" id=${`${id}-fault`}>${fault.message}</small>`}`;
 }
 
 /** "Face size, texels", "SH bands: diffuse". */
@@ -125,7 +125,7 @@ function title_of(path, unit) {
     return unit && !title.toLowerCase().includes(unit) ? `${title}, ${unit}` : title;
 }
 
-/** path: the field's place in the request; fault: { words, place: the wrong part of the value, '' for all }, if any. */
+/** path: the field's place in the request; fault: { message, place: the wrong part of the value, '' for all }, if any. */
 export function Field({ path, schema, value, on_change, fault, changed }) {
     const id = `field-${path.join('-')}`;
     const title = title_of(path, schema['x-unit']);

@@ -79,9 +79,9 @@ function as_text(value) {
     return value === null ? 'empty' : JSON.stringify(value);
 }
 
-/** What does not follow the schema: [{ path: 'irradiance.face_size', words }]. */
+/** What does not follow the schema: [{ path: 'irradiance.face_size', message }]. */
 export function faults(schema, value, path = '') {
-    const wrong = words => [{ path, words }];
+    const wrong = message => [{ path, message }];
     const types = types_of(schema);
     if (types.length && !types.some(type => type_fits(type, value)))
         return wrong(`is ${as_text(value)}; allowed is ${range_text(schema) || types.join(' or ')}`);
@@ -102,9 +102,9 @@ export function faults(schema, value, path = '') {
 function array_faults(schema, value, path) {
     const { minItems = 0, maxItems = Infinity } = schema;
     if (value.length < minItems || value.length > maxItems)
-        return [{ path, words: `has ${value.length} entries; allowed are ${minItems} to ${maxItems}` }];
+        return [{ path, message: `has ${value.length} entries; allowed are ${minItems} to ${maxItems}` }];
     if (schema.uniqueItems && new Set(value.map(item => JSON.stringify(item))).size < value.length)
-        return [{ path, words: 'holds something twice' }];
+        return [{ path, message: 'holds something twice' }];
     return schema.items ? value.flatMap((item, i) => faults(schema.items, item, `${path}.${i}`)) : [];
 }
 
@@ -112,10 +112,10 @@ function object_faults(schema, value, path) {
     const of = name => (path ? `${path}.${name}` : name);
     const missing = (schema.required ?? [])
         .filter(name => !(name in value))
-        .map(name => ({ path: of(name), words: 'is missing' }));
+        .map(name => ({ path: of(name), message: 'is missing' }));
     const own = Object.entries(value).flatMap(([name, part]) => {
         if (Object.hasOwn(schema.properties, name)) return faults(schema.properties[name], part, of(name));
-        return schema.additionalProperties === false ? [{ path: of(name), words: 'is not a field' }] : [];
+        return schema.additionalProperties === false ? [{ path: of(name), message: 'is not a field' }] : [];
     });
     return [...missing, ...own];
 }
