@@ -187,7 +187,7 @@ test('the viewer turns the sky, and its light is baked', async () => {
     await page.getByRole('link', { name: 'open the new bake' }).waitFor();
     const { bakes } = await daemon.json('/v1/bakes?state=done');
     const turned = await daemon.json(`/v1/bakes/${bakes[0].id}`);
-    assert.deepEqual(turned.request.irradiance.rotation_deg, [0, 30, 0]);
+    assert.deepEqual(turned.request.environment_settings.rotation_deg, [0, 30, 0]);
     const fetched = [];
     page.on('request', request => fetched.push(basename(new URL(request.url()).pathname)));
     await page.getByRole('link', { name: 'compare it with this one' }).click();

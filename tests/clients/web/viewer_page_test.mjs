@@ -71,11 +71,13 @@ before(async () => {
     const random = generator(11),
         hair = ball_of_hair(random);
     const maps = (count, exponent = 64, scale = 1) => random_maps(random, 8, count, { scale, exponent }).files;
+    // The first bake's request has the places of older bakes, the second one's the new ones.
     const request = { irradiance: { rotation_deg: [0, 30, 0], exposure_stops: 1, tint: [1, 1, 1], lights: [] } };
+    const second_request = { environment_settings: { rotation_deg: [0, 10, 0] } };
     const names = { environment: { path: 'stage/dawn', version: 2 } };
     const bakes = bake_service({
         first: { files: { ...hair, ...maps(34) }, request, names },
-        second: { files: { ...hair, ...maps(10, 20) }, request: { irradiance: { rotation_deg: [0, 10, 0] } } },
+        second: { files: { ...hair, ...maps(10, 20) }, request: second_request },
         dim: { files: { ...hair, ...maps(10, 64, 2 ** -20) } },
         unread: {
             files: { 'transmittance.npy': Buffer.alloc(1) },
@@ -228,12 +230,8 @@ test('The edited lighting is shown at once and baked as a request: turned, expos
             hair: 'sha256:0',
             environment: 'name:stage/dawn@2', // as which the old bake was asked for
             outputs: ['raw'],
-            irradiance: {
-                rotation_deg: [0, 90, 0],
-                exposure_stops: 1.1,
-                tint: [1, 1, 1],
-                lights: [{ direction: [0, 1, 0], irradiance: [4, 4, 4] }],
-            },
+            environment_settings: { rotation_deg: [0, 90, 0], exposure_stops: 1.1, tint: [1, 1, 1] },
+            irradiance: { lights: [{ direction: [0, 1, 0], irradiance: [4, 4, 4] }] },
         },
     ]);
 });
@@ -247,7 +245,7 @@ test('What is baked is the lighting of the bake that is shown, not of the first 
     await slider('Turn about the vertical').fill('60');
     await page.getByRole('button', { name: 'Bake this lighting' }).click();
     assert.equal(await page.getByRole('link', { name: 'compare' }).getAttribute('href'), '#/view/second/new');
-    assert.deepEqual(posted[0].irradiance.rotation_deg, [0, 70, 0]);
+    assert.deepEqual(posted[0].environment_settings.rotation_deg, [0, 70, 0]);
 });
 
 test('With another bake beside it camera and edit stay, and what both share is not fetched again', async () => {
@@ -306,7 +304,7 @@ test('An edit that begins in a bake ordered here is an edit of that bake', async
     await page.getByRole('link', { name: 'compare' }).click();
     await page.getByText(/^second.*, as baked$/).waitFor();
     assert.match(await page.innerText('.viewer-captions'), /new.*, edited/);
-    assert.deepEqual(posted[1].irradiance.rotation_deg, [0, 50, 0]); // 30 in the played bake, and 20
+    assert.deepEqual(posted[1].environment_settings.rotation_deg, [0, 50, 0]); // 30 in the played bake, and 20
     await page.goBack();
     await page.waitForFunction(() => document.querySelectorAll('.viewer-captions span').length === 1);
     assert.match(await page.innerText('.viewer-captions'), /new.*, edited/);
