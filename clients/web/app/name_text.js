@@ -8,6 +8,7 @@ export function title_text(name) {
         .replaceAll('_', ' ')
         .replace(/\bsh\b/, 'SH')
         .replace(/\bdeg$/, '')
+        .replace(/\bkajiya kay\b/, 'Kajiya-Kay')
         .trim();
     return text[0].toUpperCase() + text.slice(1);
 }

@@ -8,7 +8,8 @@ import { use_form_submit } from './form_submit.js';
 import { InputChoice, use_input_choice } from './input_choice.js';
 import { Presets } from './presets.js';
 import { build_request } from './request.js';
-import { SettingsBlock, block_names } from './settings_block.js';
+import { block_names } from './schema.js';
+import { SettingsBlock } from './settings_block.js';
 
 /** schema, presets: of Api.contract; query: { hair, environment } may hold the digests that are chosen at first. */
 export function BakeForm({ schema, presets, query }) {

@@ -9,6 +9,12 @@ export function fields_of(schema, path = []) {
     );
 }
 
+/** Names of the schema's fields that are blocks of fields themselves. */
+export const block_names = schema =>
+    Object.entries(schema.properties)
+        .filter(([, part]) => part.properties)
+        .map(([name]) => name);
+
 /** Every field's default, as a request. */
 export function defaults_of(schema) {
     return Object.fromEntries(

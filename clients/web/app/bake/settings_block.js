@@ -16,12 +16,6 @@ export function Fold({ title, faulty, children }) {
         <summary>${title}</summary>${children}</details>`;
 }
 
-/** Names of the schema's fields that are blocks of fields themselves. */
-export const block_names = schema =>
-    Object.entries(schema.properties)
-        .filter(([, part]) => part.properties)
-        .map(([name]) => name);
-
 /**
  * name: of the block in `schema`;
  * values: the form's values, base: those that count as unchanged;
