@@ -6,6 +6,7 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
+import { in_new_places } from '../../../clients/web/app/bake/request_fields.js';
 import { launch, open_page, require_tool } from './browser.mjs';
 import { Daemon, hairbake, patience_ms } from './daemon.mjs';
 
@@ -266,7 +267,7 @@ test('a hair model that calls itself a script is text', async () => {
 test('a name gets a new version, shows what followed the old one, and that is baked again in one step', async () => {
     await put_name('environment', 'stage/sunset', sky);
     const { request } = await daemon.json(`/v1/bakes/${bake}`);
-    const irradiance = { ...request.irradiance, exponent: 10 }; // a bake of its own: the first one asked by digest
+    const irradiance = { ...request.irradiance, specular_maps: 4 }; // a bake of its own: the first one asked by digest
     await daemon.finished(
         (await daemon.post('/v1/bakes', { ...request, irradiance, environment: 'name:stage/sunset' })).id,
     );
@@ -357,6 +358,28 @@ test('a bake that fails says why, and another can be cancelled from the queue', 
     });
 });
 
+test('a result by the method sh shows the error that its manifest predicts', async () => {
+    const request = {
+        environment: `sha256:${sky}`,
+        irradiance: { method: 'sh', face_size: 4, specular_maps: 5, sh_bands: { diffuse: 3, specular: 8 } },
+    };
+    const { id } = await daemon.post('/v1/bakes', request);
+    await daemon.finished(id);
+    const { predicted_error } = (await daemon.json(`/v1/bakes/${id}/files/manifest.json`)).irradiance;
+    assert.ok(predicted_error.diffuse > 0 && predicted_error.specular > 0);
+    await with_page(daemon.address, async page => {
+        await page.goto(`${daemon.address}/#/bakes/${id}`);
+        const shown = async term => page.locator('.facts div', { hasText: term }).locator('dd').innerText();
+        assert.equal(await shown('SH bands'), 'diffuse 3, specular 8');
+        for (const lobe of ['diffuse', 'specular']) {
+            const text = await shown(`Predicted SH error of the ${lobe} map`);
+            const error = parseFloat(text) / 100; // per cent, three digits
+            assert.ok(Math.abs(error - predicted_error[lobe]) <= 0.006 * predicted_error[lobe], text);
+            assert.match(text, /% of the largest value$/);
+        }
+    });
+});
+
 test('the form refuses what the schema does not allow and says what is', async () => {
     await with_page(daemon.address, async page => {
         const posts = [];
@@ -440,17 +463,18 @@ const request_of_form = async page => JSON.parse(await page.locator('form pre').
 test('numbers are taken as they are typed', async () => {
     await with_page(daemon.address, async page => {
         await open_form(page);
-        await page.getByText('Irradiance', { exact: true }).click();
+        await page.evaluate(() => document.querySelectorAll('details.stage').forEach(one => (one.open = true)));
         const type = async (field, text) => {
             await field.fill('');
             await field.pressSequentially(text);
             assert.equal(await field.inputValue(), text);
         };
-        await type(page.getByLabel('Exponent', { exact: true }), '10.05');
+        await type(page.getByLabel(/exponent$/i), '10.05');
         await type(page.getByLabel('Rotation, degrees, X'), '-0.5');
         await type(page.getByLabel(/^Tint.*, R$/), '0.02');
-        const { irradiance } = await request_of_form(page);
-        assert.deepEqual(irradiance, { exponent: 10.05, rotation_deg: [-0.5, 0, 0], tint: [0.02, 1, 1] });
+        const { fiber, environment_settings } = in_new_places(await request_of_form(page));
+        assert.deepEqual(fiber, { kajiya_kay: { exponent: 10.05 } });
+        assert.deepEqual(environment_settings, { rotation_deg: [-0.5, 0, 0], tint: [0.02, 1, 1] });
         await page.getByLabel('Preset').selectOption('draft'); // what it sets replaces what was typed
         assert.equal(await page.getByLabel(/^Tint.*, R$/).inputValue(), '1');
     });
