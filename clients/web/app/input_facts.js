@@ -1,4 +1,4 @@
-// The service's facts of a hair model or an environment as lines for people.
+// The service's facts of a hair model or an environment as text.
 import { short_digest } from './name_text.js';
 import { bytes_text, count_text, number_text } from './number_text.js';
 
@@ -55,16 +55,16 @@ function model_rows(facts) {
             : []),
         ['Strand width', range_text(facts.thickness)],
         ['Transparency', range_text(facts.transparency)],
-        ...(facts.info ? [['Its own words', facts.info]] : []),
+        ...(facts.info ? [['Info text of the file', facts.info]] : []),
     ];
 }
 
-/** [term, text] of everything that is worth reading. */
+/** [term, text] of each fact that the page shows. */
 export function fact_rows({ kind, facts, id }) {
     return [...(kind === 'model' ? model_rows(facts) : environment_rows(facts)), ['SHA-256', id]];
 }
 
-/** What a person should know before baking with it. */
+/** Warnings to read before baking with the input. */
 export function warnings({ kind, facts }) {
     const texts = [...(facts.warnings ?? [])];
     if (kind !== 'environment') return texts;
@@ -77,7 +77,7 @@ export function warnings({ kind, facts }) {
     return texts;
 }
 
-/** What people call an input: its names in the service, the file name that it had here, or the digest's beginning. */
+/** The label of an input: its names in the service, else its file name in this browser, else its digest's beginning. */
 export function label_of(id, names = {}, files = {}) {
     return names[id]?.join(', ') || files[id] || short_digest(id);
 }

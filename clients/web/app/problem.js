@@ -15,7 +15,7 @@ export class Problem extends Error {
     }
 }
 
-/** The Problem that a reply with an error status tells. */
+/** The Problem of a reply with an error status. */
 export async function problem_of(reply) {
     let body = {};
     try {

@@ -17,7 +17,7 @@ export class EditOrders {
 
     /**
      * Whether the edit is in the maps of bake `id`. left: id of the bake on the left when two are shown, else null. An
-     * order counts for as long as its edit goes on, and beside the bake that was edited also after that.
+     * order counts while its edit is the current one. Beside the bake that was edited it counts after that too.
      */
     holds_edit(id, left = null) {
         const order = this.#orders.get(id);
@@ -28,7 +28,7 @@ export class EditOrders {
 /**
  * How one or two bakes are shown at first: { sides, edit }. side: the settings of the left side so far; edit: so far.
  * One bake whose maps hold the edit begins a new edit: changes made after the order start from the old lighting, so
- * they are dropped. Beside the bake that was edited, the edit goes on as an edit of that bake.
+ * they are dropped. Beside the bake that was edited, the edit stays, as an edit of that bake.
  */
 export function arrange(bakes, side, edit, orders) {
     if (bakes.length > 1) {
@@ -36,7 +36,7 @@ export function arrange(bakes, side, edit, orders) {
         const sides = bakes.map((bake, i) => ({ ...side, bake: i, as_baked: orders.holds_edit(bake.id, left) }));
         return { sides, edit };
     }
-    const begins_anew = orders.holds_edit(bakes[0].id);
-    if (begins_anew) orders.begin_edit();
-    return { sides: [{ ...side, bake: 0, as_baked: false }], edit: begins_anew ? no_edit() : edit };
+    const begins_new_edit = orders.holds_edit(bakes[0].id);
+    if (begins_new_edit) orders.begin_edit();
+    return { sides: [{ ...side, bake: 0, as_baked: false }], edit: begins_new_edit ? no_edit() : edit };
 }

@@ -40,7 +40,7 @@ function OrderPanel({ viewer, api }) {
         <legend>Bake this lighting</legend>
         <${BakeOrder} api=${api} old=${bake.id} label="Bake this lighting" disabled=${!is_edited(edit)}
             request=${() => compose_request(request_by_names(bake), edit)}
-            on_asked=${id => orders.add(id, edit_number, bake.id)} />
+            on_posted=${id => orders.add(id, edit_number, bake.id)} />
         <button type="button" class="secondary" disabled=${!is_edited(edit)}
             onClick=${() => set_edit(no_edit())}>
             Undo the edit

@@ -1,4 +1,4 @@
-// Bakes as rows: what, under what, how far.
+// A table of bakes: state, model, environment, time.
 import { html } from '../../vendor/preact.js';
 import { use_watch } from '../hooks.js';
 import { label_of } from '../input_facts.js';
@@ -8,7 +8,7 @@ import { duration_text, time_text } from '../time_text.js';
 import { CancelButton } from './cancel_button.js';
 import { has_ended, watch_ms } from './live_bake.js';
 
-/** Of a running bake: how far it is. */
+/** The progress of a running bake. */
 function Running({ bake }) {
     const { value } = use_watch(`/v1/bakes/${bake.id}`, 2 * watch_ms, has_ended);
     if (!value) return null;
@@ -16,7 +16,7 @@ function Running({ bake }) {
         ${value.seconds_left ? html`<small>about ${duration_text(value.seconds_left)} left</small>` : null}`;
 }
 
-/** "sunset, version 2" when it was asked for by name. */
+/** An input of a bake: "sunset, version 2" when the bake names it, else its label. field: 'hair' or 'environment'. */
 function input_title(bake, field, inputs) {
     const digest = field === 'hair' ? bake.model : bake.environment;
     if (!digest) return '–';
@@ -27,19 +27,22 @@ function input_title(bake, field, inputs) {
 export const bake_title = (bake, models, environments) =>
     `${input_title(bake, 'hair', models)} under ${input_title(bake, 'environment', environments)}`;
 
-/** chosen: a Set of ids and on_choose(id, whether), or neither; only bakes of a hair model can be chosen. */
+/**
+ * chosen: a Set of ids, on_choose(id, is_chosen): both or neither; only bakes of a hair model can be chosen;
+ * on_change(): called when a bake was cancelled.
+ */
 export function BakeTable({ bakes, models, environments, chosen, on_choose, on_change }) {
     return html`<div class="scroll" tabindex="0" role="region" aria-label="Bakes"><table class="striped">
-        <${Heads} titles=${['Chosen', 'State', 'Model', 'Environment', 'Asked for', 'Bake'].slice(chosen ? 0 : 1)} />
+        <${Heads} titles=${['Chosen', 'State', 'Model', 'Environment', 'Created', 'Bake'].slice(chosen ? 0 : 1)} />
         <tbody>${bakes.map(bake => {
-            const words = bake_title(bake, models, environments);
-            const short = short_digest(bake.id); // what tells bakes of one model and environment apart
+            const title = bake_title(bake, models, environments);
+            const short = short_digest(bake.id); // distinguishes bakes of one model and environment
             return html`<tr key=${bake.id} data-id=${bake.id}>
                 ${
                     chosen &&
                     html`<td>${
                         bake.model &&
-                        html`<input type="checkbox" checked=${chosen.has(bake.id)} aria-label=${`Choose ${words}`}
+                        html`<input type="checkbox" checked=${chosen.has(bake.id)} aria-label=${`Choose ${title}`}
                     onChange=${event => on_choose(bake.id, event.target.checked)} />`
                     }</td>`
                 }
@@ -49,8 +52,8 @@ export function BakeTable({ bakes, models, environments, chosen, on_choose, on_c
                 <td>${input_title(bake, 'environment', environments)}</td>
                 <td>${time_text(bake.created)}</td>
                 <td><div class="actions">
-                    <a href=${`#/bakes/${bake.id}`} aria-label=${`${short}, ${words}`}>${short}</a>
-                    <${CancelButton} bake=${bake} label=${words} on_change=${on_change} /></div></td>
+                    <a href=${`#/bakes/${bake.id}`} aria-label=${`${short}, ${title}`}>${short}</a>
+                    <${CancelButton} bake=${bake} label=${title} on_change=${on_change} /></div></td>
             </tr>`;
         })}</tbody>
     </table></div>`;

@@ -18,7 +18,7 @@ export function use_form_submit(request, own_faults, form) {
     const submit = async event => {
         event.preventDefault();
         set_submitted(true);
-        clear(); // the reason of the last refusal may be gone, so the service is asked again
+        clear(); // the reason of the last refusal may be gone, so the request is posted again
         const count = Object.keys(own_faults).length;
         if (count > 0) {
             announce(`${count_text(count, 'field')} to correct.`);

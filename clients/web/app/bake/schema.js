@@ -1,15 +1,15 @@
-// The request's JSON schema: what a form shows of it, and whether a value follows it. Of JSON Schema it knows what
-// config/request.schema.json uses.
+// The request's JSON schema: its fields, defaults and ranges, and validation of a value. It supports the part of JSON
+// Schema that config/request.schema.json uses.
 import { number_text } from '../number_text.js';
 
-/** { path: ['irradiance', 'face_size'], schema } of every field below `schema` that is no object of fields itself. */
+/** { path: ['irradiance', 'face_size'], schema } of every field in `schema`, also in blocks within blocks. */
 export function fields_of(schema, path = []) {
     return Object.entries(schema.properties).flatMap(([name, part]) =>
         part.properties ? fields_of(part, [...path, name]) : [{ path: [...path, name], schema: part }],
     );
 }
 
-/** Names of the schema's fields that are blocks of fields themselves. */
+/** Names of the blocks at the top of the schema. */
 export const block_names = schema =>
     Object.entries(schema.properties)
         .filter(([, part]) => part.properties)
@@ -27,14 +27,14 @@ export function defaults_of(schema) {
 
 const types_of = schema => [schema.type ?? []].flat();
 
-/** The alternative of a schema that takes numbers, or null. */
+/** The alternative of the schema that allows numbers, or null. */
 export function number_part(schema) {
     if (types_of(schema).some(type => type === 'number' || type === 'integer')) return schema;
     return (schema.anyOf ?? []).find(part => number_part(part)) ?? null;
 }
 
 export const takes_null = schema => types_of(schema).includes('null');
-/** The word that may stand in a number's place ("auto"), or undefined. */
+/** The word that is allowed instead of a number, such as "auto", or undefined. */
 export const word_of = schema => (schema.anyOf ?? []).find(part => 'const' in part)?.const;
 
 /** "16 to 4096", "more than 0, up to 1", "one of a, b". */
@@ -55,7 +55,7 @@ export function range_text(schema) {
     return '';
 }
 
-// 9007199254740991 as it is: a limit is not rounded.
+// Limits are not rounded: 9007199254740991 keeps its digits.
 function range_number(value) {
     if (Math.abs(value) >= 1e16) return value.toExponential().replace('+', '');
     return Number.isInteger(value) ? String(value) : number_text(value);
@@ -85,7 +85,7 @@ function as_text(value) {
     return value === null ? 'empty' : JSON.stringify(value);
 }
 
-/** What does not follow the schema: [{ path: 'irradiance.face_size', message }]. */
+/** Where a value breaks the schema: [{ path: 'irradiance.face_size', message }]. */
 export function faults(schema, value, path = '') {
     const wrong = message => [{ path, message }];
     const types = types_of(schema);

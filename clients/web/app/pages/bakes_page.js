@@ -1,4 +1,4 @@
-// The queue and what came out of it, newest first.
+// The list of bakes, newest first.
 import { html, useState } from '../../vendor/preact.js';
 import { BakeTable } from '../bake/bake_table.js';
 import { use_inputs } from '../gallery.js';

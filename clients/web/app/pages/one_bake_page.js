@@ -1,4 +1,4 @@
-// One bake: progress until it has ended, then its result.
+// The page of one bake: its progress until it has ended, then its result.
 import { html, useEffect, useState } from '../../vendor/preact.js';
 import { bake_title } from '../bake/bake_table.js';
 import { BakeProgress } from '../bake/bake_progress.js';
@@ -6,7 +6,7 @@ import { use_bake } from '../bake/live_bake.js';
 import { use_inputs } from '../gallery.js';
 import { Loading, ProblemNote } from '../parts.js';
 
-/** The result's part of the page is loaded when there is a result. */
+/** Loads the module of the result, which only a finished bake needs. */
 function Result({ bake }) {
     const [state, set_state] = useState({});
     useEffect(() => {
