@@ -38,6 +38,10 @@ const nested_schema = block({
     environment_settings: block({
         tint: { type: 'array', minItems: 3, maxItems: 3, items: { ...number, maximum: 1e6 }, default: [1, 1, 1] },
     }),
+    irradiance: block({
+        face_size: { ...number, type: 'integer', default: 16 },
+        exponent: { description: 'Deprecated: now fiber.kajiya_kay.exponent.', deprecated: true },
+    }),
     outputs: { type: 'array', uniqueItems: true, items: { enum: ['npy', 'raw'] }, default: ['npy'] },
 });
 
@@ -124,13 +128,22 @@ test('the request of a bake names what it was asked by, in the version that it h
 });
 
 test('blocks within blocks are fields of the form as others are', () => {
-    assert.deepEqual(block_names(nested_schema), ['fiber', 'environment_settings']);
+    assert.deepEqual(block_names(nested_schema), ['fiber', 'environment_settings', 'irradiance']);
     assert.deepEqual(
         fields_of(nested_schema).map(({ path }) => path.join('.')),
-        ['hair', 'environment', 'fiber.model', 'fiber.kajiya_kay.exponent', 'environment_settings.tint', 'outputs'],
+        [
+            'hair',
+            'environment',
+            'fiber.model',
+            'fiber.kajiya_kay.exponent',
+            'environment_settings.tint',
+            'irradiance.face_size', // not the deprecated exponent
+            'outputs',
+        ],
     );
     const start = first_values(nested_schema);
     assert.deepEqual(start.fiber, { model: 'kajiya-kay', kajiya_kay: { exponent: 64 } });
+    assert.deepEqual(start.irradiance, { face_size: 16 });
     const values = with_value(start, ['fiber', 'kajiya_kay', 'exponent'], 20);
     assert.deepEqual(differences(nested_schema, values, start), ['fiber.kajiya_kay.exponent']);
     assert.deepEqual(build_request(nested_schema, values), {
@@ -213,5 +226,18 @@ test('the request of an older bake is written again with its names and the new p
         fiber: { kajiya_kay: { exponent: 20 } },
         irradiance: { face_size: 8 },
         outputs: ['raw'],
+    });
+});
+
+test('a preset in the old places sets the fields in the new ones', () => {
+    const start = first_values(schema);
+    const preset = { irradiance: { ...old_irradiance, face_size: 8 } };
+    const request = build_request(schema, merged(start, in_new_places(preset)));
+    const { model, exponent, ...environment_settings } = old_irradiance; // the model is the default
+    assert.deepEqual(request, {
+        fiber: { kajiya_kay: { exponent } },
+        environment_settings,
+        irradiance: { face_size: 8 },
+        outputs: ['npy', 'exr', 'hair', 'raw'],
     });
 });

@@ -2,23 +2,26 @@
 // Schema that config/request.schema.json uses.
 import { number_text } from '../number_text.js';
 
+/** [name, schema] of the parts of a block; deprecated ones are left out, as the form neither shows nor writes them. */
+const parts_of = schema => Object.entries(schema.properties).filter(([, part]) => !part.deprecated);
+
 /** { path: ['irradiance', 'face_size'], schema } of every field in `schema`, also in blocks within blocks. */
 export function fields_of(schema, path = []) {
-    return Object.entries(schema.properties).flatMap(([name, part]) =>
+    return parts_of(schema).flatMap(([name, part]) =>
         part.properties ? fields_of(part, [...path, name]) : [{ path: [...path, name], schema: part }],
     );
 }
 
 /** Names of the blocks at the top of the schema. */
 export const block_names = schema =>
-    Object.entries(schema.properties)
+    parts_of(schema)
         .filter(([, part]) => part.properties)
         .map(([name]) => name);
 
 /** Every field's default, as a request. */
 export function defaults_of(schema) {
     return Object.fromEntries(
-        Object.entries(schema.properties).map(([name, part]) => [
+        parts_of(schema).map(([name, part]) => [
             name,
             part.properties ? defaults_of(part) : structuredClone(part.default ?? null),
         ]),
