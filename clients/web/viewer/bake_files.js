@@ -1,5 +1,5 @@
-// A bake as the viewer needs it: its request, and the files of the output `raw` as typed arrays. Anyone may write to the
-// service, so each number of a file is checked against the size of the array that it describes.
+// A bake as the viewer needs it: its request, and the files of the output `raw` as typed arrays. Anyone may write to
+// the service, so each number of a file is checked against the size of the array that it describes.
 
 import { request_by_names } from '../app/bake/by_names.js';
 import { from_half } from './half_float.js';

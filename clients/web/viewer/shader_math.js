@@ -1,7 +1,7 @@
 // Mathematics that the shader and the page share.
 //
-// The built-in sin, cos and acos of software WebGL have errors up to 4e-4. With 33 maps between 0 and pi that is 4e-3 of
-// the step from map to map. Polynomials and square roots have errors of 3e-7.
+// The built-in sin, cos and acos of software WebGL have errors up to 4e-4. With 33 maps between 0 and pi that is 4e-3
+// of the step from map to map. Polynomials and square roots have errors of 3e-7.
 
 /**
  * Angle between unit vectors from q = |a - b|^2 in [0, 2]: sqrt(q) times this polynomial in q, lowest power first, is

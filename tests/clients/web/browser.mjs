@@ -38,7 +38,8 @@ export async function open_page(browser, origin, options = {}) {
     });
     context.on('request', request => {
         const url = new URL(request.url());
-        if (url.protocol.startsWith('http') && url.origin !== origin) faults.push(`request to another origin: ${request.url()}`);
+        if (url.protocol.startsWith('http') && url.origin !== origin)
+            faults.push(`request to another origin: ${request.url()}`);
     });
     return { context, page, faults };
 }

@@ -145,7 +145,8 @@ test('a refused form moves the focus to the first fault, whose message belongs t
         const bake_button = page.getByRole('button', { name: 'Bake', exact: true });
         await bake_button.click();
         await page.waitForFunction(() => document.activeElement.name === 'picker-Hair model');
-        assert.match(await description_of(page.getByRole('radiogroup', { name: 'Hair model' })), /or one of each is needed/);
+        const models = page.getByRole('radiogroup', { name: 'Hair model' });
+        assert.match(await description_of(models), /or one of each is needed/);
         await check_with_axe(page, 'refused form');
         await page.locator(`input[type=radio][value="${sky}"]`).check();
         await page.getByText('Irradiance', { exact: true }).click();

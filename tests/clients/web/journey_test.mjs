@@ -1,5 +1,5 @@
-// An artist's way through the whole page, with the real daemon: upload, bake, result, viewer, re-bake. Pictures of every
-// page are written to the folder HAIRBAKE_SCREENSHOTS.
+// An artist's way through the whole page, with the real daemon: upload, bake, result, viewer, re-bake. Pictures of
+// every page are written to the folder HAIRBAKE_SCREENSHOTS.
 import assert from 'node:assert/strict';
 import { createHash } from 'node:crypto';
 import { existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';

@@ -61,7 +61,8 @@ test('a mesh is sent, gets a name and a new version, and the bakes of the old on
         const by_names = { environment: 'name:stage/still', occluder: 'name:heads/round' };
         const { id } = await daemon.post('/v1/bakes', { ...request, ...by_names });
         await daemon.finished(id);
-        await session.put_name('environment', 'stage/still', await daemon.add('environment', join(sample, 'studio.hdr')));
+        const studio = await daemon.add('environment', join(sample, 'studio.hdr'));
+        await session.put_name('environment', 'stage/still', studio);
         await page.goto(`${daemon.address}/#/meshes`);
         await send_and_name(other, 'heads/round');
         await page.getByRole('cell', { name: '2', exact: true }).waitFor();

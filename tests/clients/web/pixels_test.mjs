@@ -2,8 +2,8 @@
 //
 // The maps have random texels with steep slopes, so the point of a strand in a pixel must be known to about 1e-5 of a
 // pixel. Therefore every strand belongs to one view. There it is horizontal, at its own depth, with its vertices on
-// centres of pixels: the point is linear in the pixel's column, without rounding. Pixels near strands of other views are
-// left out.
+// centres of pixels: the point is linear in the pixel's column, without rounding. Pixels near strands of other views
+// are left out.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { as_half, bake_service, generator, random_maps, strand_files } from './raw_files.mjs';

@@ -68,7 +68,7 @@ export async function open_page(browser, options = {}) {
     page.problems = [];
     page.on('pageerror', error => page.problems.push(`exception: ${error.stack}`));
     page.on('console', message => {
-        const waits = message.text().includes('GPU stall due to ReadPixels'); // expected: tests read frames back and time them
+        const waits = message.text().includes('GPU stall due to ReadPixels'); // expected: tests read frames back
         if (['error', 'warning'].includes(message.type()) && !waits) page.problems.push(message.text());
     });
     return page;

@@ -85,7 +85,7 @@ test('an upload that is turned away waits for the time of Retry-After, and resum
     const reason = 'more requests or uploads at once than allowed';
     await session.with_page(async page => {
         const offsets = watch_patches(page);
-        const once = new Map(); // each kind of request is turned away the first time; of PATCH, that of the second piece
+        const once = new Map(); // each kind of request is turned away once; of PATCH, the second piece
         await page.route(/\/v1\/(blobs|uploads|models)/, route => {
             const request = route.request();
             const kind = `${request.method()} ${new URL(request.url()).pathname.split('/')[2]}`;

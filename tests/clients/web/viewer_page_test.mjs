@@ -124,7 +124,7 @@ beforeEach(() => {
     polls = [going, done];
 });
 afterEach(async () => {
-    const problems = page.problems.filter(problem => !/status of [45]\d\d/.test(problem)); // answers that a test provokes
+    const problems = page.problems.filter(problem => !/status of [45]\d\d/.test(problem)); // tests provoke those
     await page.close();
     assert.deepEqual(problems, [], "on the browser's console");
 });

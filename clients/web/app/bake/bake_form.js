@@ -42,7 +42,9 @@ export function BakeForm({ schema, presets, query }) {
             name => wrong[name] && html`<p class="problem" role="alert" id=${`fault-${name}`}>${wrong[name]}</p>`,
         )}
         <${Presets} presets=${presets} value=${preset} on_change=${on_preset} />
-        ${block_names(schema).map(name => html`<${SettingsBlock} key=${name} name=${name} base=${base} ...${common} />`)}
+        ${block_names(schema).map(
+            name => html`<${SettingsBlock} key=${name} name=${name} base=${base} ...${common} />`,
+        )}
         <${MeshesAndPriority} ...${common}
             on_wait=${(name, message) => set_waits(old => ({ ...old, [name]: message }))} />
         <${Outputs} ...${common} />

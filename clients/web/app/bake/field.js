@@ -113,7 +113,7 @@ function Select({ id, schema, value, on_change, described, invalid }) {
 }
 
 function Help({ id, schema, fault }) {
-    const range = schema.enum || schema.items?.enum ? '' : range_text(schema); // lists show the allowed values themselves
+    const range = schema.enum || schema.items?.enum ? '' : range_text(schema); // lists show the allowed values
     return html`<small id=${`${id}-help`}>${schema.description}${range && ` (${range}.)`}</small>
         ${fault && html`<small class="problem" id=${`${id}-fault`}>${fault.message}</small>`}`;
 }

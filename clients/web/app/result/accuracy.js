@@ -5,7 +5,7 @@ const digits = 3;
 
 const interval = ([low, high]) => `${number_text(low, digits)} to ${number_text(high, digits)}`;
 const with_interval = (value, range) => `${number_text(value, digits)} (95 %: ${interval(range)})`;
-const percent = share => `${number_text(100 * share, digits)} %`;
+const of_largest = share => `${number_text(100 * share, digits)} % of the largest value`;
 
 /** A against traced strands; nothing for a bake without hair or without reference vertices. */
 function transmittance_rows(bar) {
@@ -26,12 +26,12 @@ function transmittance_rows(bar) {
 function irradiance_rows({ interpolation_bound_relative, sh_bands, predicted_error }) {
     const rows = [];
     if (interpolation_bound_relative !== undefined)
-        rows.push(['Between specular maps, at most', `${percent(interpolation_bound_relative)} of the largest value`]);
+        rows.push(['Between specular maps, at most', of_largest(interpolation_bound_relative)]);
     if (sh_bands) rows.push(['SH bands', `diffuse ${sh_bands.diffuse}, specular ${sh_bands.specular}`]);
     if (predicted_error)
         rows.push(
-            ['Predicted SH error of the diffuse map, RMS', `${percent(predicted_error.diffuse)} of the largest value`],
-            ['Predicted SH error of the specular maps, RMS', `${percent(predicted_error.specular)} of the largest value`],
+            ['Predicted SH error of the diffuse map, RMS', of_largest(predicted_error.diffuse)],
+            ['Predicted SH error of the specular maps, RMS', of_largest(predicted_error.specular)],
         );
     return rows;
 }

@@ -1,4 +1,4 @@
-// The upload of one file in pieces. It resumes after a lost connection or a reload: tus-js-client keeps the addresses of
+// The upload of one file in pieces. It resumes after a lost connection or a reload: tus-js-client keeps addresses of
 // uploads in localStorage, by the file's digest.
 import { is_turned_away, pause, wait_ms_of } from '../retry.js';
 

@@ -194,7 +194,7 @@ function hold(id) {
     const granted = new Promise(resolve => {
         if (!navigator.locks) return resolve();
         const own = () => (resolve(), released);
-        navigator.locks.request(`hairbake-upload-${id}`, own).catch(resolve); // a page without storage has no locks either
+        navigator.locks.request(`hairbake-upload-${id}`, own).catch(resolve); // no locks without storage
     });
     return { granted, release };
 }
