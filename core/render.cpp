@@ -16,7 +16,7 @@
 #include "core/irradiance/added_lights.h"
 #include "core/irradiance/irradiance_maps.h"
 #include "core/output/file_sink.h"
-#include "core/output/image_file.h"
+#include "core/output/picture_encoding.h"
 #include "core/output/tone.h"
 #include "core/render/camera_json.h"
 #include "core/render_input.h"

@@ -3,9 +3,9 @@
 #include <cstdio>
 
 #include "core/output/format_table.h"
-#include "core/output/image_file.h"
 #include "core/output/latlong_picture.h"
 #include "core/output/map_metadata.h"
+#include "core/output/picture_encoding.h"
 
 namespace hairbake {
 namespace {

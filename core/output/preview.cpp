@@ -6,8 +6,8 @@
 
 #include "core/output/canvas.h"
 #include "core/output/hair_picture.h"
-#include "core/output/image_file.h"
 #include "core/output/latlong_picture.h"
+#include "core/output/picture_encoding.h"
 #include "core/output/tone.h"
 #include "core/output/versions.h"
 

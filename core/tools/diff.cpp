@@ -11,7 +11,7 @@
 #include "core/environment/image_file.h"
 #include "core/output/canvas.h"
 #include "core/output/file_sink.h"
-#include "core/output/image_file.h"
+#include "core/output/picture_encoding.h"
 
 namespace hairbake {
 namespace {

@@ -8,7 +8,7 @@
 #include "core/output/canvas.h"
 #include "core/output/file_sink.h"
 #include "core/output/hair_picture.h"
-#include "core/output/image_file.h"
+#include "core/output/picture_encoding.h"
 #include "core/output/tone.h"
 
 namespace hairbake {

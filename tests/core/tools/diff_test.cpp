@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
-#include "core/output/image_file.h"
+#include "core/output/picture_encoding.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 

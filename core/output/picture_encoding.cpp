@@ -1,4 +1,4 @@
-#include "core/output/image_file.h"
+#include "core/output/picture_encoding.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
