@@ -21,8 +21,8 @@ void expect(int ok) {
     if (ok != 1) throw Error(ErrorKind::internal, "SHA-256 is not available in this OpenSSL");
 }
 
-// Looked up once: OpenSSL searches its providers under a lock each time, which costs more than a short text's digest.
-// Never freed, since OpenSSL may be gone before our statics are.
+// Looked up once, because each look-up searches the providers under a lock, which costs more than the digest of a short
+// text. Never freed, because OpenSSL may unload before our statics are destroyed.
 const EVP_MD* sha256() {
     static const EVP_MD* const type = EVP_MD_fetch(nullptr, "SHA256", nullptr);
     return type;

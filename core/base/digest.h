@@ -1,4 +1,4 @@
-// SHA-256, the name of everything that hairbake stores.
+// SHA-256. Everything that hairbake stores is named by it.
 #pragma once
 
 #include <cstddef>
@@ -29,7 +29,8 @@ private:
     std::unique_ptr<State> state_;
 };
 
-/// Digest of a file's bytes, as hexadecimal digits. Throws Error(bad_input) when it cannot be read.
+/// Digest of the bytes of a file, as hexadecimal digits.
+/// Throws Error(bad_input) when the file cannot be read.
 std::string digest_of_file(const std::filesystem::path& file);
 
 }  // namespace hairbake

@@ -14,8 +14,8 @@ enum class ErrorKind {
     internal           ///< a defect of hairbake
 };
 
-/// What went wrong, in words for the person who gave the input: which file, where in it, what was found and what
-/// is allowed. `field` is the request field at fault ("transmittance.voxels") or empty.
+/// The message is for the person who gave the input: it names the file, the place in it, what was found and what is
+/// allowed. `field` is the request field at fault ("transmittance.voxels") or empty.
 class Error : public std::runtime_error {
 public:
     Error(ErrorKind kind, const std::string& message, std::string field = {})

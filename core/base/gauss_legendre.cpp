@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/assert.h"
+
 namespace hairbake {
 namespace {
 
@@ -23,6 +25,7 @@ Legendre legendre(int degree, double x) {
 }  // namespace
 
 Quadrature gauss_legendre(int count) {
+    HAIRBAKE_ASSERT(count >= 1);
     Quadrature rule{std::vector<double>(count), std::vector<double>(count)};
     for (int i = 0; i < (count + 1) / 2; ++i) {
         double x = -std::cos(std::numbers::pi * (i + 0.75) / (count + 0.5)), step = 1;

@@ -1,4 +1,4 @@
-// Gauss-Legendre quadrature, for every integral that has no closed form.
+// Gauss-Legendre quadrature, used for every integral without a closed form.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@ struct Quadrature {
     std::vector<double> nodes, weights;
 };
 
-/// `count` >= 1 nodes. Newton's method on the Legendre polynomial (Press et al., Numerical Recipes, section 4.6);
+/// Returns `count` >= 1 nodes. Newton's method on the Legendre polynomial (Press et al., Numerical Recipes, section 4.6);
 /// accurate to about 1e-15 for counts up to some thousands. Thread-safe.
 Quadrature gauss_legendre(int count);
 

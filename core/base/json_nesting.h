@@ -1,4 +1,4 @@
-// How deep JSON text is nested, looked at before it is parsed: what comes after the parser recurses (copies, dumps).
+// The depth of JSON text, checked before it is parsed: copying and dumping a parsed value are recursive.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace hairbake {
 
-/// Of requests and manifests; what hairbake writes itself has fewer than ten levels.
+/// For requests and manifests. hairbake itself writes fewer than ten levels.
 inline constexpr int deepest_json = 64;
 
-/// Whether more than `levels` lists and objects lie in one another; brackets in strings do not count. Text that is
-/// not JSON is judged by its brackets all the same.
+/// Whether lists and objects are nested more than `levels` deep. Brackets in strings do not count. Text that is not JSON
+/// is judged by its brackets too.
 inline bool nested_deeper_than(std::string_view json, int levels) {
     int depth = 0;
     bool in_string = false;
@@ -30,7 +30,7 @@ inline bool nested_deeper_than(std::string_view json, int levels) {
     return false;
 }
 
-/// Throws Error(kind) that begins with `source` for JSON of more than deepest_json levels.
+/// Throws Error(kind) whose message begins with `source`, for JSON of more than deepest_json levels.
 inline void check_nesting(std::string_view json, const std::string& source, ErrorKind kind,
                           const std::string& field = {}) {
     if (nested_deeper_than(json, deepest_json))

@@ -1,4 +1,4 @@
-// The file's name for errors of checks that see its numbers only.
+// Adds the name of the file to errors of functions that see only its contents.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace hairbake {
 
-/// Runs `body`; what it says of bad input then begins with `file`.
+/// Runs `body`. Messages of its Error(bad_input) then begin with `file`.
 template <class Body>
 auto naming_file(const std::string& file, const Body& body) {
     try {

@@ -24,7 +24,7 @@ void parallel_for(std::size_t count, std::size_t grain, const std::function<void
 
 void with_threads(int threads, const std::function<void()>& body) {
     const int wanted = threads > 0 ? threads : tbb::this_task_arena::max_concurrency();
-    // The arena alone may not exceed the number of cores; the control lifts that, so that tests can run seven
+    // An arena alone is limited to the number of cores. The control lifts that limit, so that tests can run seven
     // threads on two cores.
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(wanted));
     tbb::task_arena arena(wanted);

@@ -4,11 +4,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/assert.h"
+
 namespace hairbake {
 
 using std::numbers::pi;
 
 ShBasis::ShBasis(int bands) : bands_(bands) {
+    HAIRBAKE_ASSERT(bands >= 1 && bands <= 256);
     double square = 1 / (4 * pi);  // P_mm^2 / sin^2m = (2m + 1) / (4 pi) * product of (2k - 1) / (2k)
     for (int m = 0; m < bands; ++m) {
         if (m > 0) square *= (2 * m + 1.0) / (2 * m);
@@ -38,6 +41,7 @@ void ShBasis::legendre_column(int m, double z, double sine, std::span<double> ou
 }
 
 void ShBasis::evaluate(const Vec3d& direction, std::span<double> values) const {
+    HAIRBAKE_ASSERT(values.size() >= static_cast<std::size_t>(count()));
     std::vector<double> column(bands_);
     double re = 1, im = 0;  // (x + i y)^m = sin^m exp(i m phi)
     for (int m = 0; m < bands_; ++m) {

@@ -1,8 +1,8 @@
 // Real orthonormal spherical harmonics.
 //
 // Order l * l + l + m, z is the polar axis, no Condon-Shortley phase: Y_0 = 1/sqrt(4 pi), Y_1 = sqrt(3/(4 pi)) (y, z,
-// x), as three.js and Filament order them (spec, section 0). "Bands" counts l = 0 .. bands - 1: bands * bands
-// coefficients.
+// x), as three.js and Filament order them (docs/math.md, "Spherical harmonics"). "Bands" counts l = 0 .. bands - 1:
+// bands * bands coefficients.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@
 
 namespace hairbake {
 
-/// Evaluates all harmonics of a number of bands. Immutable after construction: thread-safe.
+/// Evaluates all harmonics of a number of bands. Immutable after construction, so thread-safe.
 /// The recurrence runs over fully normalised associated Legendre functions, which stays accurate for hundreds of bands
 /// (Holmes and Featherstone 2002, section 2.1: forward column method; underflow near the poles is harmless below 1000).
 class ShBasis {

@@ -1,7 +1,10 @@
-// Three-component vectors. `Vec3f` carries positions and colours, `Vec3d` what is summed.
+// Three-component vectors. Vec3f holds positions and colours; sums and geometry use Vec3d.
 #pragma once
 
+#include <array>
 #include <cmath>
+
+#include "core/base/assert.h"
 
 namespace hairbake {
 
@@ -47,10 +50,16 @@ template <class T>
 T length(const Vec3<T>& a) {
     return std::sqrt(dot(a, a));
 }
-/// Unit vector along `a`; the caller guarantees that `a` is not zero.
+/// Unit vector along `a`, which must not be zero.
 template <class T>
 Vec3<T> normalized(const Vec3<T>& a) {
+    HAIRBAKE_ASSERT(!(a == Vec3<T>()));
     return a / length(a);
+}
+/// The components in order; converts to a JSON list.
+template <class T>
+constexpr std::array<T, 3> as_array(const Vec3<T>& a) {
+    return {a.x, a.y, a.z};
 }
 template <class T>
 bool is_finite(const Vec3<T>& a) {

@@ -20,7 +20,7 @@ constexpr std::uintmax_t kMostBytes = std::uintmax_t{256} << 20;
 constexpr double kFarthest = 1e18;
 
 [[noreturn]] void refuse_size(const std::string& name, std::uintmax_t bytes) {
-    throw Error(ErrorKind::bad_input, name + " is of " + std::to_string(bytes) + " bytes; allowed are at most " +
+    throw Error(ErrorKind::bad_input, name + " has " + std::to_string(bytes) + " bytes; allowed are at most " +
                                           std::to_string(kMostBytes) + " for a mesh");
 }
 
@@ -68,7 +68,7 @@ private:
     std::size_t at_ = 0, line_ = 1;
 };
 
-/// A word for a message: what a person can read, not too long.
+/// A word for a message, shortened, with unprintable characters replaced.
 std::string quoted(std::string_view word) {
     std::string shown = "\"";
     for (const char c : word.substr(0, 40)) shown += c >= ' ' && c <= '~' ? c : '?';
@@ -107,7 +107,7 @@ struct Corner {
     std::int64_t normal;  ///< -1 for none
 };
 
-/// i, i/j, i//k or i/j/k; the texture coordinate j is not looked at.
+/// i, i/j, i//k or i/j/k; the texture coordinate j is ignored.
 Corner read_corner(const Words& words, std::string_view word, std::size_t positions, std::size_t normals) {
     const std::size_t first = word.find('/');
     Corner corner{read_index(words, word.substr(0, first), positions, "position"), -1};
@@ -143,7 +143,7 @@ public:
 private:
     static constexpr std::int64_t kUnset = -1, kNone = -2;
 
-    /// Notes that a corner of `position` has this normal.
+    /// Records the normal that one corner gives its position.
     void agree(const Corner& corner) {
         std::int64_t& normal = normal_of_[corner.position];
         const auto value = [&](std::int64_t n) { return normals_[static_cast<std::size_t>(n)]; };

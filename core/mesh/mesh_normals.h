@@ -7,8 +7,8 @@
 
 namespace hairbake {
 
-/// One unit normal for each position: the sum over its triangles of their normals, weighted with their angle there (so
-/// that it does not depend on how flat faces are cut); (0, 1, 0) where no triangle gives one.
+/// One unit normal for each position: the sum of its triangles' normals, each weighted by the triangle's angle there.
+/// So it does not depend on how flat faces are triangulated. (0, 1, 0) where no triangle gives one.
 std::vector<Vec3f> normals_of_faces(const TriangleMesh& mesh);
 
 }  // namespace hairbake

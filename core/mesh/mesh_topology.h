@@ -7,8 +7,8 @@
 
 namespace hairbake {
 
-/// How the triangles hang together. Positions with equal coordinates count as one, so that a seam which a program
-/// cut for its texture does not open a mesh; triangles that so lose a side are not counted.
+/// How the triangles are connected. Positions with equal coordinates count as one, so that a texture seam does not open
+/// a mesh. Triangles that thereby lose a side are not counted.
 struct MeshTopology {
     std::uint64_t edges = 0;
     std::uint64_t open_edges = 0;       ///< in one triangle only

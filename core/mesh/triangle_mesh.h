@@ -1,4 +1,4 @@
-// A triangle mesh: what hides hair from light, or what hair shadows.
+// A triangle mesh: an occluder, which hides hair from light, or a receiver, which hair shadows.
 #pragma once
 
 #include <array>

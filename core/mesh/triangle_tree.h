@@ -1,4 +1,4 @@
-// A tree of boxes over a mesh's triangles, to find the nearest one.
+// A bounding volume hierarchy over a mesh's triangles, which finds the nearest one.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace hairbake {
 
-/// Triangles without area are not in it. Refers to the mesh, which must outlive it. Immutable; may be asked from
-/// several threads.
+/// Leaves out triangles without area. Refers to the mesh, which must outlive it. Immutable after construction, so
+/// thread-safe.
 class TriangleTree {
 public:
     explicit TriangleTree(const TriangleMesh& mesh);
@@ -35,7 +35,9 @@ private:
         std::uint32_t second = 0, begin = 0, count = 0;
     };
 
+    /// Adds the nodes of order_[begin, end).
     void build(std::uint32_t begin, std::uint32_t end);
+    /// Replaces `best` and `limit` where the triangle is nearer.
     void offer(std::uint32_t triangle, const Vec3d& p, std::optional<Nearest>& best, double& limit) const;
 
     const TriangleMesh& mesh_;

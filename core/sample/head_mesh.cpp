@@ -60,8 +60,7 @@ std::string line(const char* key, const Vec3f& v) {
 
 TriangleMesh make_head_mesh(int rings) {
     if (rings < 4 || rings > 2048)
-        throw Error(ErrorKind::usage, "a head mesh of " + std::to_string(rings) + " rings; allowed are 4 to 2048",
-                    "rings");
+        throw Error(ErrorKind::usage, "rings is " + std::to_string(rings) + "; allowed are 4 to 2048", "rings");
     TriangleMesh mesh;
     add_vertices(mesh, rings, 2 * rings);
     add_triangles(mesh, rings, 2 * rings);

@@ -1,4 +1,4 @@
-// The head of the sample grooms as a triangle mesh.
+// A triangle mesh of the head that the sample grooms grow on.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,8 @@ namespace hairbake {
 /// of it on the scalp. Throws Error(usage) when `rings` is out of range.
 TriangleMesh make_head_mesh(int rings = 96);
 
-/// Writes Wavefront OBJ (v, vn, f). Throws Error(out_of_resources) when the file cannot be written whole.
+/// Writes Wavefront OBJ (v, vn, f).
+/// Throws Error(out_of_resources) when the file cannot be written whole.
 void write_obj(const TriangleMesh& mesh, const std::filesystem::path& file);
 
 }  // namespace hairbake

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/assert.h"
+
 namespace hairbake {
 namespace {
 
@@ -30,6 +32,7 @@ double exit_distance(const Ellipsoid& e, const Vec3d& direction) {
 }  // namespace
 
 double head_radius(const Vec3d& direction) {
+    HAIRBAKE_ASSERT(std::abs(dot(direction, direction) - 1) < 1e-6);
     // The 16-norm is a smooth maximum of the parts: it rounds the creases between them.
     double sum = 0;
     for (const Ellipsoid& part : parts) sum += square(square(square(square(exit_distance(part, direction) / 10))));
@@ -38,6 +41,7 @@ double head_radius(const Vec3d& direction) {
 
 double height_above_head(const Vec3d& point) {
     const double distance = length(point);
+    HAIRBAKE_ASSERT(distance > 0);
     return distance - head_radius(point / distance);
 }
 

@@ -60,7 +60,7 @@ private:
     std::uint64_t seed_;
 };
 
-// A bright patch on the plane that touches the sphere at `centre`.
+// A rectangle or an ellipse of light on the plane that touches the sphere at `centre`.
 struct Lamp {
     Vec3d centre, right, up;  // unit, orthogonal
     double half_width, half_height;
@@ -151,7 +151,8 @@ Vec3d background(const Scene& scene, const Vec3d& d) {
     return {};
 }
 
-// Throws the lamp's light at the texels in small even patches, which keeps its flux at every size of the map.
+// Cuts the lamp into small equal patches and adds the flux of each to its texel. So the total flux is the same at every
+// size of the map.
 void add_lamp(EnvironmentMap& map, const LatLongRows& rows, const Lamp& lamp) {
     const double texel = pi / map.height;
     const int steps =

@@ -34,7 +34,7 @@ Look look_of(GroomStyle style) {
     return {};
 }
 
-/// What distinguishes one strand (or clump guide) from the next.
+/// The random properties of one strand or clump guide.
 struct Character {
     double length;     ///< cm along the path
     double lift;       ///< cm above the skin that the strand comes to lie at
@@ -45,7 +45,7 @@ struct Character {
 
 Character draw_character(const Look& look, Random random, const Vec3d& root) {
     Character c;
-    // Hair from the crown lies over hair from the sides: its layer is further out.
+    // Hair from the crown lies over hair from the sides, so its layer is further out.
     c.lift = random.next(0.08, 0.5) + 0.9 * std::max(0.0, root.y) * random.next(0.5, 1);
     const double arc_length = random.next(14, 26) * random.next(0.9, 1.1);
     c.curl_radius = look.curl_radius * random.next(0.7, 1.3);

@@ -1,4 +1,4 @@
-// How one strand of a sample groom grows. Private to the groom generator.
+// Generates one strand of a sample groom. Private to the groom generator.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace hairbake {
 
 inline constexpr float root_width_cm = 0.01f;
 
-/// An own sequence of random numbers for each (seed, kind, index).
+/// A separate sequence of random numbers for each (seed, kind, index).
 inline Random stream_of(std::uint64_t seed, std::uint64_t kind, std::uint64_t index) {
     return Random(Random(seed).next_u64() ^ Random(~kind).next_u64() ^ (Random(index).next_u64() << 1));
 }
