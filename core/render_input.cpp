@@ -83,7 +83,7 @@ RenderInput from_folder(const RenderRequest& request) {
     if (needs_environment(request)) input.bake.environment = environment_of(request, stored);
     if (stored.digests.contains("occluder") && request.mode == ShadingMode::reference)
         input.occluder = read_mesh(occluder_of(request, stored));
-    input.hair = read_hair(*input.bake.hair);
+    input.hair = read_hair(*input.bake.hair, {input.bake.strand.time});
     take_arrays(stored.arrays, input);
     const bool needs_average = request.mode == ShadingMode::directional || request.transmittance;
     if (needs_average && input.average.size() != input.hair.vertex_count())

@@ -1,5 +1,7 @@
 // hairbake sample
 #include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
 
 #include "clients/cli/commands.h"
 #include "clients/cli/progress_display.h"
@@ -10,7 +12,7 @@ namespace hairbake {
 
 void add_sample_command(CLI::App& app, Action& action) {
     struct Options {
-        std::string folder;
+        std::string folder, style = std::string(name_of(GroomStyle::straight));
         SampleSettings settings;
     };
     CLI::App* command = app.add_subcommand("sample", "Write a sample groom, a head and three HDR skies");
@@ -19,9 +21,11 @@ void add_sample_command(CLI::App& app, Action& action) {
     command->add_option("folder", options->folder, "where the files go; files of their names are replaced")
         ->required()
         ->type_name("DIR");
-    CLI::Option* style = command->add_option("--style", settings.style, "straight, wavy or curly");
+    CLI::Option* style = command->add_option("--style", options->style, "straight, wavy or curly");
     CLI::Option* vertices = command->add_option("--vertices", settings.vertices, "vertices of the groom");
-    style->check(CLI::IsMember({"straight", "wavy", "curly"}));
+    std::vector<std::string> styles;
+    for (const NamedGroomStyle& named : groom_styles) styles.emplace_back(named.name);
+    style->check(CLI::IsMember(styles));
     command->add_option("--paper-model", settings.paper_model, "1 to 4: a groom of a published model's size")
         ->check(CLI::Range(1, 4))
         ->excludes(style)
@@ -29,6 +33,7 @@ void add_sample_command(CLI::App& app, Action& action) {
     command->add_option("--map-width", settings.map_width, "width of the maps, even, 16 to 4096");
     command->add_option("--seed", settings.seed, "the same seed gives the same files");
     command->callback([options, &action] {
+        options->settings.style = groom_style_named(options->style);
         action = [options] {
             const auto progress = make_progress_display("auto", {{"write", 1}});
             const SignalWatch watch(*progress, [&] { discard_sample_parts(options->folder); });

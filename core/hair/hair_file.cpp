@@ -6,32 +6,54 @@
 #include <cstring>
 #include <fstream>
 #include <new>
+#include <sstream>
 #include <system_error>
 
 #include "core/base/error.h"
-#include "core/hair/hair_source.h"
-#include "core/hair/tfx_file.h"
+#include "core/hair/hair_reader.h"
 
 namespace hairbake {
 namespace {
 
-/// The extension decides only who refuses a file that begins as neither.
-bool named_tfx(const std::string& name) {
-    const std::string extension = std::filesystem::path(name).extension().string();
-    return extension == ".tfx" || extension == ".TFX";
+/// The reader that recognises the first bytes; null where none does.
+const HairReader* reader_of_bytes(std::span<const std::byte> first) {
+    for (const HairReader* reader : hair_readers())
+        if (reader->recognises(first)) return reader;
+    return nullptr;
 }
 
-HairModel read(const HairSource& source) {
-    std::array<std::byte, 4> begin{};
-    source.copy(0, begin.data(), static_cast<std::size_t>(std::min<std::uint64_t>(source.size, begin.size())));
-    const bool hair = std::memcmp(begin.data(), "HAIR", 4) == 0;
-    return begins_as_tfx(begin) || (!hair && named_tfx(source.name)) ? read_tfx_format(source)
-                                                                     : read_hair_format(source);
+/// The reader whose extension the file's name has, in upper or lower case; null where there is none.
+const HairReader* reader_of_name(const std::string& name) {
+    std::string extension = std::filesystem::path(name).extension().string();
+    for (char& c : extension)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    for (const HairReader* reader : hair_readers())
+        if (reader->extension == extension) return reader;
+    return nullptr;
+}
+
+std::string time_warning(const HairReader& reader, double time) {
+    std::ostringstream text;
+    text << "strand.time is " << time << " seconds; it has no effect: a file of the format " << reader.name
+         << " holds no animation";
+    return text.str();
+}
+
+Groom read(const HairSource& source, const HairReadSettings& settings) {
+    std::array<std::byte, recognition_bytes> bytes{};
+    const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(source.size, bytes.size()));
+    source.copy(0, bytes.data(), count);
+    const HairReader* reader = reader_of_bytes(std::span(bytes).first(count));
+    if (!reader) reader = reader_of_name(source.name);
+    if (!reader) refuse_beginning(source);
+    Groom groom = reader->read(source, settings);
+    if (settings.time != 0 && !reader->animated) groom.warnings.push_back(time_warning(*reader, settings.time));
+    return groom;
 }
 
 }  // namespace
 
-HairModel read_hair(const std::filesystem::path& file) {
+Groom read_groom(const std::filesystem::path& file, const HairReadSettings& settings) {
     const std::string name = file.string();
     std::error_code problem;
     const auto status = std::filesystem::status(file, problem);
@@ -40,33 +62,41 @@ HairModel read_hair(const std::filesystem::path& file) {
     const std::uint64_t size = std::filesystem::file_size(file, problem);
     std::ifstream stream(file, std::ios::binary);
     if (problem || !stream) refuse_hair(name, "the file cannot be opened: " + std::generic_category().message(errno));
+    const auto copy = [&](std::uint64_t offset, void* to, std::size_t n) {
+        if (!stream.seekg(static_cast<std::streamoff>(offset)) ||
+            !stream.read(static_cast<char*>(to), static_cast<std::streamsize>(n)))
+            refuse_hair(name, "the file could not be read to its end");
+    };
     try {
-        return read({name, size, [&](std::uint64_t offset, void* to, std::size_t n) {
-                         if (!stream.seekg(static_cast<std::streamoff>(offset)) ||
-                             !stream.read(static_cast<char*>(to), static_cast<std::streamsize>(n)))
-                             refuse_hair(name, "the file could not be read to its end");
-                     }});
+        return read({name, size, copy}, settings);
     } catch (const std::bad_alloc&) {
         throw Error(ErrorKind::out_of_resources,
                     name + ": not enough memory for a file of " + std::to_string(size) + " bytes");
     }
 }
 
-HairModel read_hair(std::span<const std::byte> bytes, const std::string& name) {
-    return read({name, bytes.size(), [&](std::uint64_t offset, void* to, std::size_t n) {
-                     if (offset > bytes.size() || n > bytes.size() - offset)
-                         refuse_hair(name, "the file could not be read to its end");
-                     if (n > 0) std::memcpy(to, bytes.data() + offset, n);
-                 }});
+Groom read_groom(std::span<const std::byte> bytes, const std::string& name, const HairReadSettings& settings) {
+    const auto copy = [&](std::uint64_t offset, void* to, std::size_t n) {
+        if (offset > bytes.size() || n > bytes.size() - offset)
+            refuse_hair(name, "the file could not be read to its end");
+        if (n > 0) std::memcpy(to, bytes.data() + offset, n);
+    };
+    return read({name, bytes.size(), copy}, settings);
 }
+
+HairModel read_hair(const std::filesystem::path& file, const HairReadSettings& settings) {
+    return read_groom(file, settings).model;
+}
+
+HairModel read_hair(std::span<const std::byte> bytes, const std::string& name) { return read_groom(bytes, name).model; }
 
 bool is_hair_file(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     if (!stream) refuse_hair(file.string(), std::generic_category().message(errno));
-    std::array<char, 4> begin{};
-    stream.read(begin.data(), begin.size());
-    return std::memcmp(begin.data(), "HAIR", 4) == 0 || begins_as_tfx(std::as_bytes(std::span(begin))) ||
-           named_tfx(file.string());
+    std::array<std::byte, recognition_bytes> bytes{};
+    stream.read(reinterpret_cast<char*>(bytes.data()), bytes.size());
+    const auto count = static_cast<std::size_t>(stream.gcount());
+    return reader_of_bytes(std::span(bytes).first(count)) || reader_of_name(file.string());
 }
 
 }  // namespace hairbake

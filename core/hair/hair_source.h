@@ -1,4 +1,4 @@
-// What the readers of hair files share: bytes at an offset, refusals, checks of numbers. Private to the readers.
+// Shared by the readers of groom files: bytes at an offset, refusals, checks of numbers. Private to the readers.
 #pragma once
 
 #include <cstddef>
@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/assert.h"
 #include "core/hair/hair_model.h"
 
 namespace hairbake {
@@ -14,7 +15,8 @@ namespace hairbake {
 /// Throws Error(bad_input): "<name>: <what>".
 [[noreturn]] void refuse_hair(const std::string& name, const std::string& what);
 
-/// The bytes of a hair file. `copy(offset, to, n)` copies n bytes from `offset`, or throws when there are fewer.
+/// The bytes of a groom file. `copy(offset, to, n)` copies n bytes from `offset`.
+/// Throws Error(bad_input) when there are fewer.
 struct HairSource {
     std::string name;  ///< for messages
     std::uint64_t size = 0;
@@ -23,18 +25,15 @@ struct HairSource {
     /// `count` values from `offset` on. The caller has checked that the file holds them.
     template <class T>
     std::vector<T> array(std::uint64_t offset, std::size_t count) const {
+        HAIRBAKE_ASSERT(offset <= size && count <= (size - offset) / sizeof(T));
         std::vector<T> values(count);
         if (count > 0) copy(offset, values.data(), count * sizeof(T));
         return values;
     }
 };
 
-/// Throws Error(bad_input) naming strand and vertex unless every number of the model that counts is finite and every
-/// coordinate at most 1e18 in magnitude.
+/// Throws Error(bad_input) naming strand and vertex unless every value in use is finite and every coordinate is at most
+/// 1e18 in magnitude. A default value is in use where the model has no array.
 void check_numbers(const std::string& name, const HairModel& model);
-
-/// The readers of the single formats. Errors as read_hair() says.
-HairModel read_hair_format(const HairSource& source);
-HairModel read_tfx_format(const HairSource& source);
 
 }  // namespace hairbake

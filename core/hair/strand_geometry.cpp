@@ -40,15 +40,18 @@ std::vector<float> resolve_opacities(const HairModel& model, const StrandSetting
     return opacities;
 }
 
-void find_bounds(StrandGeometry& geometry) {
-    if (geometry.positions.empty()) return;
-    Vec3f low = geometry.positions[0], high = low;
-    for (const Vec3f& p : geometry.positions) {
+struct Bounds {
+    Vec3f low, high;
+};
+
+Bounds bounds_of(const std::vector<Vec3f>& positions) {
+    if (positions.empty()) return {};
+    Vec3f low = positions[0], high = low;
+    for (const Vec3f& p : positions) {
         low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
         high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
     }
-    geometry.bounds_min = low;
-    geometry.bounds_max = high;
+    return {low, high};
 }
 
 double longest_side(const StrandGeometry& geometry) {
@@ -56,12 +59,13 @@ double longest_side(const StrandGeometry& geometry) {
     return std::max({side.x, side.y, side.z});
 }
 
-/// Of the segments that have a length at all.
+/// Counts of the segments whose length is not 0.
 struct SegmentCounts {
     std::size_t with_length = 0, too_short = 0;
 };
 
-SegmentCounts find_degenerate_segments(StrandGeometry& geometry) {
+/// Sets the segments of `geometry` and their counts.
+SegmentCounts set_segments(StrandGeometry& geometry) {
     const double shortest = 1e-6 * longest_side(geometry);
     SegmentCounts counts;
     geometry.segments.assign(geometry.vertex_count(), Segment::none);
@@ -78,7 +82,7 @@ SegmentCounts find_degenerate_segments(StrandGeometry& geometry) {
     return counts;
 }
 
-/// Axis by axis.
+/// The median of each coordinate.
 Vec3f median_position(std::vector<Vec3f> positions) {
     Vec3f median;
     const auto middle = positions.begin() + static_cast<std::ptrdiff_t>(positions.size() / 2);
@@ -90,9 +94,9 @@ Vec3f median_position(std::vector<Vec3f> positions) {
     return median;
 }
 
-/// One point far out makes the bounds so large that the strands themselves count as degenerate: A would be 1 without a
-/// word, and the traced reference would agree. It is one point where half of all lie within a hundredth of the longest
-/// side; else the segments are short by themselves, as where every point stands twice.
+/// One point far out makes the bounds so large that the strands themselves count as degenerate. A would silently be 1,
+/// and the traced reference would agree. A point is taken for far out where half of all points lie within a hundredth of
+/// the longest side. Otherwise the segments themselves are short, as where every point is duplicated.
 void check_for_stray_point(const HairModel& model, const StrandGeometry& geometry, const SegmentCounts& counts) {
     const Vec3d median(median_position(model.positions));
     const auto distance = [&](const Vec3f& p) { return length(Vec3d(p) - median); };
@@ -118,8 +122,10 @@ StrandGeometry make_strand_geometry(const HairModel& model, const StrandSettings
     geometry.strand_begin = model.strand_begin;
     if (geometry.strand_begin.empty()) geometry.strand_begin.push_back(0);
     geometry.positions = model.positions;
-    find_bounds(geometry);
-    const SegmentCounts counts = find_degenerate_segments(geometry);
+    const Bounds bounds = bounds_of(geometry.positions);
+    geometry.bounds_min = bounds.low;
+    geometry.bounds_max = bounds.high;
+    const SegmentCounts counts = set_segments(geometry);
     if (counts.too_short > counts.with_length / 2) check_for_stray_point(model, geometry, counts);
     return geometry;
 }

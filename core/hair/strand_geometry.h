@@ -1,16 +1,17 @@
-// What the physics sees of a hair model: polylines with a width and an opacity at each vertex.
+// The strands as the computations use them: polylines with a width and an opacity at each vertex.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include "core/base/assert.h"
 #include "core/base/vec.h"
 #include "core/hair/hair_model.h"
 #include "core/hair/strand_settings.h"
 
 namespace hairbake {
 
-/// What the segment from vertex i to i + 1 is.
+/// The kind of the segment from vertex i to i + 1.
 enum class Segment : std::uint8_t {
     none,       ///< vertex i is the last of its strand: no segment starts there
     solid,      ///< carries extinction
@@ -33,13 +34,15 @@ struct StrandGeometry {
     std::size_t vertex_count() const { return positions.size(); }
 };
 
-/// The segments that touch vertex `v`, degenerate ones skipped over: all solid segments i with first <= i <= last.
+/// The segments that touch vertex `v`, with degenerate ones skipped: all solid segments i with first <= i <= last. The
+/// transmittance at `v` leaves these out.
 struct AdjacentSegments {
     std::uint32_t first, last;
     bool contains(std::uint32_t segment) const { return segment >= first && segment <= last; }
 };
 
 inline AdjacentSegments adjacent_segments(const StrandGeometry& strands, std::uint32_t v) {
+    HAIRBAKE_ASSERT(v < strands.vertex_count());
     std::uint32_t first = v, last = v;
     while (first > 0 && strands.segments[first - 1] == Segment::degenerate) --first;
     if (first > 0 && strands.segments[first - 1] == Segment::solid) --first;
@@ -49,10 +52,10 @@ inline AdjacentSegments adjacent_segments(const StrandGeometry& strands, std::ui
 
 /// Applies `settings` to `model`. A segment is degenerate when its length is zero or below 1e-6 of the longest side
 /// of the bounds.
-/// Throws Error(bad_input) naming strand and vertex for a width that is not positive and finite (the message
-/// tells to give strand.width), an opacity outside [0, 1], or the point farthest out where the bounds make more than
-/// half of the segments that have a length degenerate and half of the points lie within 1 % of the bounds' longest side
-/// from the middle.
+/// Throws Error(bad_input) naming strand and vertex:
+/// - for a width that is not positive and finite (the message asks for strand.width), or an opacity outside [0, 1];
+/// - for the point farthest out, where more than half of the segments with a length are degenerate and half of the
+///   points lie within 1 % of the bounds' longest side from the middle.
 StrandGeometry make_strand_geometry(const HairModel& model, const StrandSettings& settings);
 
 }  // namespace hairbake

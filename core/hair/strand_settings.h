@@ -5,7 +5,7 @@
 
 namespace hairbake {
 
-/// The request's `strand` block: how the model's widths and opacities are read.
+/// How the model's widths and opacities are taken.
 struct StrandSettings {
     std::optional<double> width;     ///< strand diameter in model units for every point, instead of the file's; > 0
     double width_scale = 1;          ///< multiplies whichever width holds; > 0

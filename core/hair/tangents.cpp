@@ -5,7 +5,7 @@
 namespace hairbake {
 namespace {
 
-/// Tangents of the points [begin, end) of one strand. Points at one place in a row are taken together.
+/// Sets the tangents of the points [begin, end), one strand. Consecutive points at one place share a tangent.
 void tangents_of_strand(const std::vector<Vec3f>& positions, std::size_t begin, std::size_t end,
                         std::vector<Vec3f>& tangents) {
     for (std::size_t run = begin, next; run < end; run = next) {

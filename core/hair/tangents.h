@@ -1,4 +1,4 @@
-// The strand's tangent at every vertex: what the run time looks the irradiance maps up by.
+// The strand's tangent at every vertex. The irradiance maps are looked up by it at run time.
 #pragma once
 
 #include <vector>
@@ -7,10 +7,12 @@
 
 namespace hairbake {
 
-/// [V] unit tangents from root to tip. At a vertex it is the direction from the last point of its strand before it that
-/// lies elsewhere to the first one after it that does; at the ends of a strand, from or to the vertex itself; and where
-/// a strand turns back on itself exactly, to the point after. (0, 0, 0) at every vertex of a strand whose points are
-/// all one, which has no direction. In model space. Thread-safe.
+/// [V] unit tangents from root to tip, in model space. Thread-safe.
+/// - Inside a strand: from the last point before the vertex to the first point after it, where both lie elsewhere than
+///   the vertex.
+/// - At the ends: from or to the vertex itself.
+/// - Where a strand turns back on itself exactly: from the vertex to the point after it.
+/// - (0, 0, 0) at every vertex of a strand whose points all coincide.
 std::vector<Vec3f> vertex_tangents(const HairModel& model);
 
 }  // namespace hairbake

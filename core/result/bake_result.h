@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/environment/environment_map.h"
+#include "core/hair/hair_file_extras.h"
 #include "core/hair/hair_model.h"
 #include "core/mesh/mesh_topology.h"
 #include "core/mesh/triangle_mesh.h"
@@ -32,6 +33,7 @@ struct MeshFacts {
 struct InputFacts {
     InputDigests digests;
     std::optional<HairFacts> hair;
+    HairFileExtras hair_extras;  ///< of the hair's file, for transmittance.hair
     std::optional<MeshFacts> occluder, receiver;
     std::optional<EnvironmentMap> environment;  ///< without its pixels
 };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numbers>
 #include <string>
 
@@ -19,7 +18,7 @@ void check(bool ok, const std::string& field, std::uint64_t found, const std::st
     if (!ok) throw Error(ErrorKind::usage, field + " is " + std::to_string(found) + "; allowed are " + allowed, field);
 }
 
-/// First point of every strand: equal shares, the remainder spread evenly one vertex a strand.
+/// First point of each strand. Strands get equal shares; the remainder is spread evenly, one vertex a strand.
 std::vector<std::uint32_t> share_out(std::uint64_t vertices, std::uint64_t per_strand) {
     const std::uint64_t strands = vertices == 0 ? 0 : std::max<std::uint64_t>(1, vertices / per_strand);
     std::vector<std::uint32_t> begin(strands + 1, 0);
@@ -28,8 +27,8 @@ std::vector<std::uint32_t> share_out(std::uint64_t vertices, std::uint64_t per_s
     return begin;
 }
 
-/// Directions of `count` different roots, spread evenly over the scalp: the accepted points of the two-dimensional
-/// golden sequence (steps 1/g and 1/g^2 with g^3 = g + 1), shifted by the seed.
+/// Directions of `count` different roots, spread evenly over the scalp. They are the accepted points of the
+/// two-dimensional golden sequence (steps 1/g and 1/g^2 with g^3 = g + 1), shifted by the seed.
 std::vector<Vec3d> place_roots(std::size_t count, std::uint64_t seed) {
     constexpr double g = 1.32471795724474602596;
     Random random = stream_of(seed, 0, 0);
@@ -45,7 +44,7 @@ std::vector<Vec3d> place_roots(std::size_t count, std::uint64_t seed) {
         const double across = std::sqrt(1 - y * y);
         const Vec3d direction(across * std::sin(azimuth), y, across * std::cos(azimuth));
         if (!is_scalp(direction)) continue;
-        // A patch's area grows with the squared radius: thin out where the head is narrow.
+        // The area of a patch grows with the squared radius, so fewer points are accepted where the head is narrow.
         const double radius = head_radius(direction);
         if (random.next() * 110 > radius * radius) continue;
         roots.push_back(direction);
@@ -53,18 +52,12 @@ std::vector<Vec3d> place_roots(std::size_t count, std::uint64_t seed) {
     return roots;
 }
 
-HairModel empty_model(const GroomSettings& settings) {
-    HairModel model;
-    model.default_thickness = root_width_cm;
-    model.default_color = {0.32f, 0.2f, 0.12f};
-    const char* const names[] = {"straight", "wavy", "curly"};
-    const std::string info = std::string("hairbake sample groom, ") + names[static_cast<int>(settings.style)] +
-                             ", seed " + std::to_string(settings.seed) + ", cm, Y up";
-    std::memcpy(model.info.data(), info.data(), std::min(info.size(), model.info.size()));
-    return model;
-}
-
 }  // namespace
+
+std::string description_of(const GroomSettings& settings) {
+    return "hairbake sample groom, " + std::string(name_of(settings.style)) + ", seed " +
+           std::to_string(settings.seed) + ", cm, Y up";
+}
 
 GroomSettings paper_model(int number) {
     switch (number) {
@@ -85,7 +78,9 @@ HairModel generate_groom(const GroomSettings& settings) {
     check(settings.vertices_per_strand >= 2 && settings.vertices_per_strand <= 65535, "vertices_per_strand",
           settings.vertices_per_strand, "2 to 65,535");
 
-    HairModel model = empty_model(settings);
+    HairModel model;
+    model.default_thickness = root_width_cm;  // for the file's header: the model has a thickness array
+    model.default_color = {0.32f, 0.2f, 0.12f};
     model.strand_begin = share_out(settings.vertices, settings.vertices_per_strand);
     const std::vector<Vec3d> roots = place_roots(model.strand_count(), settings.seed);
     model.positions.resize(settings.vertices);

@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/environment/environment_writer.h"
-#include "core/hair/hair_file.h"
+#include "core/hair/hair_format_writer.h"
 #include "core/output/file_sink.h"
 #include "core/sample/groom_generator.h"
 #include "core/sample/head_mesh.h"
@@ -14,19 +14,12 @@
 namespace hairbake {
 namespace {
 
-GroomStyle style_named(const std::string& name) {
-    if (name == "straight") return GroomStyle::straight;
-    if (name == "wavy") return GroomStyle::wavy;
-    if (name == "curly") return GroomStyle::curly;
-    throw Error(ErrorKind::usage, "style is \"" + name + "\"; allowed is one of straight, wavy, curly", "style");
-}
-
 GroomSettings groom_of(const SampleSettings& settings) {
     GroomSettings groom;
     if (settings.paper_model) {
         groom = paper_model(*settings.paper_model);
     } else {
-        groom.style = style_named(settings.style);
+        groom.style = settings.style;
         groom.vertices = settings.vertices;
     }
     groom.seed = settings.seed;
@@ -35,10 +28,10 @@ GroomSettings groom_of(const SampleSettings& settings) {
 
 constexpr const char* sample_files[] = {"groom.hair", "head.obj", "sky.hdr", "studio.hdr", "overcast.hdr"};
 
-void make_folder(const std::filesystem::path& folder) {
+void create_folder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
-    if (error) throw Error(ErrorKind::bad_input, folder.string() + " cannot be made: " + error.message(), "folder");
+    if (error) throw Error(ErrorKind::bad_input, folder.string() + " cannot be created: " + error.message(), "folder");
 }
 
 }  // namespace
@@ -46,10 +39,10 @@ void make_folder(const std::filesystem::path& folder) {
 std::vector<std::filesystem::path> write_samples(const std::filesystem::path& folder, const SampleSettings& settings,
                                                  Progress& progress) {
     const GroomSettings groom = groom_of(settings);
-    make_folder(folder);
+    create_folder(folder);
     std::vector<std::filesystem::path> files;
-    // Each file appears whole: it is written under another name first. None is begun after a cancel, so that
-    // discard_sample_parts() has the last word.
+    // Each file appears whole, because it is written under another name first. No file is begun after a cancel, so
+    // that nothing is left after discard_sample_parts().
     const auto add = [&](const std::string& name, const auto& write, const auto& make) {
         progress.check();
         progress.report(static_cast<double>(files.size()) / 5);
@@ -58,7 +51,9 @@ std::vector<std::filesystem::path> write_samples(const std::filesystem::path& fo
         write(made, part_of(folder / name));
         std::filesystem::rename(part_of(folder / name), files.emplace_back(folder / name));
     };
-    const auto hair = [](const HairModel& model, const auto& file) { write_hair(model, file); };
+    const auto hair = [&](const HairModel& model, const auto& file) {
+        write_hair(model, file, make_hair_file_extras(model, description_of(groom)));
+    };
     try {
         add("groom.hair", hair, [&] { return generate_groom(groom); });
         add("head.obj", write_obj, [] { return make_head_mesh(); });
@@ -78,7 +73,7 @@ void discard_sample_parts(const std::filesystem::path& folder) noexcept {
     try {
         for (const char* name : sample_files) discard_part(folder / name);
     } catch (const std::exception&) {
-        // Nothing more can be done.
+        // Only memory for the names can be missing; the parts then stay.
     }
 }
 

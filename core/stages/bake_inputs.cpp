@@ -68,7 +68,10 @@ void BakeInputs::read_hair_and_meshes(Progress& progress) {
     if (request_.occluder) facts_.digests["occluder"] = digest_of_file(*request_.occluder);
     if (request_.receiver) facts_.digests["receiver"] = digest_of_file(*request_.receiver);
     progress.check();
-    hair_ = read_hair(*request_.hair);
+    Groom groom = read_groom(*request_.hair, {request_.strand.time});
+    hair_ = std::move(groom.model);
+    facts_.hair_extras = groom.extras;
+    warnings_.insert(warnings_.end(), groom.warnings.begin(), groom.warnings.end());
     if (request_.occluder) read_occluder();
     if (request_.receiver) {
         receiver_ = read_mesh(*request_.receiver);

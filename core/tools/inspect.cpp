@@ -1,9 +1,13 @@
 #include "core/tools/inspect.h"
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <span>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/environment/cube_map.h"
@@ -18,11 +22,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-template <class T>
-Json triple(const Vec3<T>& v) {
-    return {v.x, v.y, v.z};
-}
-
 /// Smallest and largest of the array, or the header's default where the file has none.
 Json range_of(std::span<const float> values, float otherwise) {
     if (values.empty()) return {{"default", otherwise}};
@@ -30,7 +29,7 @@ Json range_of(std::span<const float> values, float otherwise) {
     return {{"minimum", *low}, {"maximum", *high}};
 }
 
-/// What a bake of the model's own widths will be refused for; empty where it will not.
+/// Why a bake that takes the widths from the file will be refused; empty where it will not.
 std::string width_warning(const HairModel& model) {
     const auto missing = [](float width) { return !(width > 0); };
     const std::vector<float>& widths = model.thickness;
@@ -45,7 +44,8 @@ std::string width_warning(const HairModel& model) {
 }
 
 Json hair_facts(const fs::path& file) {
-    const HairModel model = read_hair(file);
+    const Groom groom = read_groom(file);
+    const HairModel& model = groom.model;
     Json facts{{"kind", "hair model"},
                {"format", model.format},
                {"strands", model.strand_count()},
@@ -60,14 +60,15 @@ Json hair_facts(const fs::path& file) {
             low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
             high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
         }
-        facts["bounds"] = {{"minimum", triple(low)}, {"maximum", triple(high)}};
+        facts["bounds"] = {{"minimum", as_array(low)}, {"maximum", as_array(high)}};
     }
     facts["thickness"] = range_of(model.thickness, model.default_thickness);
     facts["transparency"] = range_of(model.transparency, model.default_transparency);
-    facts["colors"] = model.colors.empty() ? Json(triple(model.default_color)) : Json("one a vertex");
-    const char* info = model.info.data();
-    facts["info"] = std::string(info, std::find(info, info + model.info.size(), '\0'));
-    if (const std::string warning = width_warning(model); !warning.empty()) facts["warnings"] = {warning};
+    facts["colors"] = model.colors.empty() ? Json(as_array(model.default_color)) : Json("one a vertex");
+    facts["info"] = groom.description;
+    std::vector<std::string> warnings = groom.warnings;
+    if (const std::string warning = width_warning(model); !warning.empty()) warnings.push_back(warning);
+    if (!warnings.empty()) facts["warnings"] = warnings;
     return facts;
 }
 
@@ -82,13 +83,13 @@ Json brightest_pixel(const EnvironmentMap& map) {
     if (cube) facts["face"] = std::string(cube_face_name(static_cast<int>(row / map.width)));
     facts["row"] = cube ? row % map.width : row;
     facts["column"] = column;
-    facts["radiance"] = triple(*brightest);
-    facts["direction"] = triple(direction_of(map, {column + 0.5, row + 0.5}));
+    facts["radiance"] = as_array(*brightest);
+    facts["direction"] = as_array(direction_of(map, {column + 0.5, row + 0.5}));
     return facts;
 }
 
-/// A sun or small lamps: the pixels of at least an eighth of the largest radiance, where together they are smaller than
-/// a disc 9 degrees across (0.02 sr) and hold at least a twentieth of the light; null elsewhere.
+/// A sun or small lamps: the pixels that have at least an eighth of the largest radiance. Null unless these pixels
+/// together are smaller than a disc 9 degrees across (0.02 sr) and hold at least a twentieth of the light.
 Json small_lights(const EnvironmentMap& map) {
     const auto sum = [](const Vec3f& c) { return double(c.x) + c.y + c.z; };
     double largest = 0;
@@ -115,7 +116,7 @@ Json mean_radiance(const EnvironmentMap& map) {
     for (int y = 0; y < map.height; ++y)
         for (int x = 0; x < map.width; ++x)
             sum += Vec3d(map.pixels[std::size_t(y) * map.width + x]) * solid_angles.at(x, y);
-    return triple(sum / (4 * std::numbers::pi));
+    return as_array(sum / (4 * std::numbers::pi));
 }
 
 Json environment_facts(const fs::path& file, Progress& progress) {
@@ -140,20 +141,24 @@ Json environment_facts(const fs::path& file, Progress& progress) {
     return facts;
 }
 
+/// Blocks of a manifest that `hairbake info` leaves out: what every manifest has, what repeats the request, and what
+/// has an entry for each map.
+constexpr std::array<std::string_view, 7> left_out{"format",      "format_version", "request", "irradiance",
+                                                   "conventions", "files",          "measured"};
+
 Json result_facts(const fs::path& folder) {
     files_of_result(folder);  // throws unless it is a result
     const Json manifest = Json::parse(read_manifest_text(folder / "manifest.json"));
     Json facts{{"kind", "bake result"}};
-    for (const char* name : {"id", "stages", "inputs", "transmittance", "error_bar", "repairs", "warnings", "versions",
-                             "timings_s", "peak_memory_bytes"})
-        if (manifest.contains(name)) facts[name] = manifest[name];
+    for (const auto& [name, block] : manifest.items())
+        if (std::find(left_out.begin(), left_out.end(), name) == left_out.end()) facts[name] = block;
     Json files = Json::object();
     for (const Json& file : manifest["files"]) files[file.at("name").get<std::string>()] = file.value("bytes", 0ull);
     facts["files"] = files;
     return facts;
 }
 
-/// Of a result, or of the six faces of an environment.
+/// Facts of a result folder, or of a folder with the six faces of an environment.
 Json folder_facts(const fs::path& folder, Progress& progress) {
     if (fs::exists(folder / "manifest.json")) return result_facts(folder);
     try {
@@ -177,16 +182,18 @@ std::string value_text(const Json& value) {
     return list;
 }
 
-void add_lines(const Json& object, const std::string& prefix, std::string& lines) {
+std::string lines_of(const Json& object, const std::string& prefix) {
+    std::string lines;
     for (const auto& [name, value] : object.items()) {
         if (value.is_object()) {
-            add_lines(value, prefix + name + ".", lines);
+            lines += lines_of(value, prefix + name + ".");
         } else if (!(value.is_array() && value.empty())) {
             std::string label = prefix + name;
             label.resize(std::max<std::size_t>(label.size() + 2, 34), ' ');
             lines += label + value_text(value) + "\n";
         }
     }
+    return lines;
 }
 
 }  // namespace
@@ -202,10 +209,6 @@ std::string inspect(const fs::path& path, Progress& progress) {
     return facts.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string as_lines(const std::string& json_object) {
-    std::string lines;
-    add_lines(Json::parse(json_object), "", lines);
-    return lines;
-}
+std::string as_lines(const std::string& json_object) { return lines_of(Json::parse(json_object), ""); }
 
 }  // namespace hairbake

@@ -1,4 +1,4 @@
-// Facts of a file that hairbake reads or wrote.
+// Facts of the files that hairbake reads and writes.
 #pragma once
 
 #include <filesystem>
@@ -8,10 +8,13 @@
 
 namespace hairbake {
 
-/// Facts of a hair model (strands, points, arrays, bounds, widths), an environment (size, layout, format,
-/// brightest pixel, energy, what its pixels need repaired; a file, a folder or a pattern of six faces) or a result
-/// folder (its manifest in short), as a JSON object. What `path` is shows from what it holds, not from its name. Throws
-/// Error(bad_input), Error(cancelled).
+/// Returns a JSON object. Its `kind` tells what `path` is, which is decided by the content:
+/// - "hair model": strands, points, arrays, bounds, widths;
+/// - "environment map" (a file, a folder or a pattern of six faces): size, layout, format, brightest pixel, energy,
+///   pixels that need repair;
+/// - "bake result" (a folder): the blocks of its manifest that are short, and the sizes of its files.
+/// Throws Error(bad_input) for anything else, naming the file.
+/// Throws Error(cancelled).
 std::string inspect(const std::filesystem::path& path, Progress& progress);
 
 /// The JSON object of inspect() as aligned lines for people: names on the left, values on the right.

@@ -1,10 +1,11 @@
-// Any bytes at all as a HAIR file: refused as bad input, or read, baked into strands and written back unchanged.
+// Any bytes as a HAIR file: they are refused as bad input, or read, made into strands and written back unchanged.
 #include <cstdint>
 #include <sstream>
 #include <string_view>
 
 #include "core/base/error.h"
 #include "core/hair/hair_file.h"
+#include "core/hair/hair_format_writer.h"
 #include "core/hair/strand_geometry.h"
 #include "tests/fuzz/demand.h"
 
@@ -44,13 +45,14 @@ void check_geometry(const HairModel& model, const StrandSettings& settings) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    HairModel model;
+    Groom groom;
     const auto bytes = std::as_bytes(std::span(data, size));
-    if (!succeeds_or_refuses([&] { model = read_hair(bytes, "fuzz.hair"); })) return 0;
-    if (model.format != "HAIR") return 0;  // fuzz_tfx looks after those
+    if (!succeeds_or_refuses([&] { groom = read_groom(bytes, "fuzz.hair"); })) return 0;
+    const HairModel& model = groom.model;
+    if (model.format != "HAIR") return 0;  // other formats have fuzz targets of their own
 
     std::ostringstream written;
-    write_hair(model, written);
+    write_hair(model, written, groom.extras);
     demand(written.view() == std::string_view(reinterpret_cast<const char*>(data), size),
            "a model that was read unchanged is written as the same bytes");
 
@@ -68,7 +70,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
     const std::vector<float> transmittance(model.vertex_count(), 0.5f);
     std::ostringstream baked;
-    write_hair(with_transmittance_as_colors(model, transmittance), baked);
+    write_hair(with_transmittance_as_colors(model, transmittance), baked, groom.extras);
     const HairModel again = read_hair(std::as_bytes(std::span(baked.view())), "baked.hair");
     demand(again.strand_begin == model.strand_begin && again.colors.size() == model.vertex_count(),
            "grey colours change nothing else");

@@ -1,10 +1,11 @@
-// Any bytes at all as a TressFX file: refused as bad input, or read, made into strands and written as HAIR.
+// Any bytes as a TressFX file: they are refused as bad input, or read, made into strands and written as HAIR.
 #include <cstdint>
 #include <sstream>
 
 #include "core/base/error.h"
 #include "core/base/naming_file.h"
 #include "core/hair/hair_file.h"
+#include "core/hair/hair_format_writer.h"
 #include "core/hair/strand_geometry.h"
 #include "tests/fuzz/demand.h"
 
@@ -12,7 +13,8 @@ namespace {
 
 using namespace hairbake;
 
-void check_model(const HairModel& model, std::size_t file_size) {
+void check_groom(const Groom& groom, std::size_t file_size) {
+    const HairModel& model = groom.model;
     const std::size_t v = model.vertex_count();
     demand(v <= file_size / 12, "no more points than the file has bytes for");
     demand(model.strand_begin.front() == 0 && model.strand_begin.back() == v, "the strands cover the points");
@@ -20,10 +22,10 @@ void check_model(const HairModel& model, std::size_t file_size) {
     for (const Vec3f& p : model.positions) demand(is_finite(p), "positions are finite");
 
     std::ostringstream written;
-    write_hair(model, written);
-    const HairModel again = read_hair(std::as_bytes(std::span(written.view())), "written.hair");
-    demand(again.positions == model.positions && again.strand_begin == model.strand_begin &&
-               again.colors == model.colors && again.info == model.info,
+    write_hair(model, written, groom.extras);
+    const Groom again = read_groom(std::as_bytes(std::span(written.view())), "written.hair");
+    demand(again.model.positions == model.positions && again.model.strand_begin == model.strand_begin &&
+               again.model.colors == model.colors && again.description == groom.description,
            "the HAIR form holds the same model");
 
     StrandSettings settings;
@@ -35,9 +37,9 @@ void check_model(const HairModel& model, std::size_t file_size) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    // Named .tfx, so that nothing but a HAIR file goes to another reader.
+    // Because of the name, only a HAIR file goes to another reader.
     try {
-        check_model(read_hair(std::as_bytes(std::span(data, size)), "fuzz.tfx"), size);
+        check_groom(read_groom(std::as_bytes(std::span(data, size)), "fuzz.tfx"), size);
     } catch (const Error& error) {
         demand(error.kind() == ErrorKind::bad_input, "an input's fault is bad_input");
         demand(std::string_view(error.what()).starts_with("fuzz.tfx: "), "a refusal names the file");

@@ -12,7 +12,7 @@ class SmallInputs {
 public:
     SmallInputs() {
         SampleSettings settings;
-        settings.style = "wavy";
+        settings.style = GroomStyle::wavy;
         settings.vertices = 3000;
         settings.map_width = 64;
         Progress progress;

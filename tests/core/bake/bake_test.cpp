@@ -12,6 +12,7 @@
 #include "core/base/digest.h"
 #include "core/base/error.h"
 #include "core/hair/hair_file.h"
+#include "core/hair/hair_format_writer.h"
 #include "tests/support/small_inputs.h"
 #include "tests/support/tfx_bytes.h"
 

@@ -31,7 +31,8 @@ TEST(StrandGeometry, TakesWidthsFromTheFile) {
     for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(geometry.widths[i], 0.01f + 0.001f * static_cast<float>(i));
     HairModel model = two_strands();
     model.thickness.clear();
-    EXPECT_EQ(make_strand_geometry(model, {}).widths, std::vector<float>(5, 0.02f));  // the header's default
+    model.default_thickness = 0.02f;
+    EXPECT_EQ(make_strand_geometry(model, {}).widths, std::vector<float>(5, 0.02f));
 }
 
 TEST(StrandGeometry, WidthOverridesTheFileAndWidthScaleMultipliesWhicheverHolds) {

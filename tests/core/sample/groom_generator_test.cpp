@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/hair/hair_file.h"
+#include "core/hair/hair_format_writer.h"
 #include "core/sample/head_mesh.h"
 #include "core/sample/head_shape.h"
 

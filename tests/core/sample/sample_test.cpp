@@ -68,14 +68,28 @@ TEST(Sample, PaperModelsHaveThePublishedVertexCounts) {
     EXPECT_NE(inspect(files[0], progress).find("\"vertices\": 687532"), std::string::npos);
 }
 
+TEST(Sample, StylesHaveTheirNames) {
+    for (const NamedGroomStyle& named : groom_styles) {
+        EXPECT_EQ(groom_style_named(named.name), named.style);
+        EXPECT_EQ(name_of(named.style), named.name);
+    }
+    try {
+        groom_style_named("bald");
+        ADD_FAILURE();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage);
+        EXPECT_EQ(error.field(), "style");
+        EXPECT_STREQ(error.what(), "style is \"bald\"; allowed is one of straight, wavy, curly");
+    }
+}
+
 TEST(Sample, FieldsOutOfRangeAreUsageErrors) {
     const TemporaryFolder folder;
     Progress progress;
-    SampleSettings style = small(), model = small(), width = small();
-    style.style = "bald";
+    SampleSettings model = small(), width = small();
     model.paper_model = 5;
     width.map_width = 15;
-    for (const SampleSettings& settings : {style, model, width}) {
+    for (const SampleSettings& settings : {model, width}) {
         try {
             write_samples(folder / "a", settings, progress);
             ADD_FAILURE();

@@ -7,6 +7,7 @@
 
 #include "core/bake.h"
 #include "core/hair/hair_file.h"
+#include "core/hair/hair_format_writer.h"
 #include "tests/support/small_inputs.h"
 
 namespace hairbake {
@@ -32,6 +33,9 @@ TEST(Inspect, TellsModelMapAndResultApart) {
     EXPECT_EQ(baked["kind"], "bake result");
     EXPECT_EQ(baked["id"], result.id);
     EXPECT_TRUE(baked["files"].contains("transmittance.npy"));
+    for (const char* block : {"stages", "inputs", "transmittance", "error_bar", "repairs", "warnings", "versions"})
+        EXPECT_TRUE(baked.contains(block)) << block;
+    EXPECT_FALSE(baked.contains("irradiance"));  // one entry for each map: too long
 }
 
 TEST(Inspect, ASunIsCountedInPixelsAndShareOfTheLight) {

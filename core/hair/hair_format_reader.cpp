@@ -1,10 +1,18 @@
+#include <algorithm>
 #include <cstdint>
+#include <cstring>
+#include <string>
+#include <vector>
 
-#include "core/hair/hair_header.h"
-#include "core/hair/hair_source.h"
+#include "core/hair/hair_format.h"
 
 namespace hairbake {
 namespace {
+
+bool begins_as_hair(std::span<const std::byte> bytes) {
+    constexpr std::array<char, 4> magic = HairHeader{}.magic;
+    return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+}
 
 std::uint64_t size_of_file(const HairHeader& h) {
     const std::uint64_t strands = h.strands, points = h.points;  // 128 + 34 * 2^32 at most: no overflow
@@ -23,10 +31,7 @@ HairHeader read_header(const HairSource& source) {
         refuse_hair(source.name, "the file has " + std::to_string(source.size) + " bytes; a HAIR header alone has 128");
     HairHeader h;
     source.copy(0, &h, sizeof h);
-    if (h.magic != HairHeader{}.magic)
-        refuse_hair(source.name,
-                    "the first four bytes are neither \"HAIR\" nor the version 3.0 or 4.0 of a TressFX file: this is "
-                    "no hair model");
+    if (h.magic != HairHeader{}.magic) refuse_beginning(source);
     if (h.arrays & ~known_arrays)
         refuse_hair(source.name, "header, array bits: found " + std::to_string(h.arrays) +
                                      "; only bits 0 to 4 (values up to 31) have a meaning");
@@ -44,7 +49,7 @@ HairHeader read_header(const HairSource& source) {
     return h;
 }
 
-/// Reads array after array behind the header.
+/// Reads one array after another behind the header.
 class Arrays {
 public:
     explicit Arrays(const HairSource& source) : source_(source) {}
@@ -84,10 +89,19 @@ std::vector<std::uint32_t> read_strands(const HairSource& source, const HairHead
     return begin;
 }
 
-}  // namespace
+HairFileExtras extras_of(const HairHeader& h) {
+    HairFileExtras extras;
+    extras.info = h.info;
+    extras.has_segments_array = h.arrays & has_segments;
+    extras.default_segments = h.default_segments;
+    extras.default_thickness = h.default_thickness;
+    extras.default_transparency = h.default_transparency;
+    extras.default_color = h.default_color;
+    if (h.points == 0) extras.empty_arrays = h.arrays & (has_thickness | has_transparency | has_colors);
+    return extras;
+}
 
-HairModel read_hair_format(const HairSource& source) {
-    const HairHeader h = read_header(source);
+HairModel read_model(const HairSource& source, const HairHeader& h) {
     Arrays arrays(source);
     HairModel model;
     model.strand_begin = read_strands(source, h, arrays);
@@ -95,15 +109,32 @@ HairModel read_hair_format(const HairSource& source) {
     if (h.arrays & has_thickness) model.thickness = arrays.next<float>(h.points);
     if (h.arrays & has_transparency) model.transparency = arrays.next<float>(h.points);
     if (h.arrays & has_colors) model.colors = arrays.next<Vec3f>(h.points);
-    model.has_segments_array = h.arrays & has_segments;
-    model.default_segments = h.default_segments;
-    model.default_thickness = h.default_thickness;
-    model.default_transparency = h.default_transparency;
-    model.default_color = h.default_color;
-    model.info = h.info;
-    if (h.points == 0) model.empty_arrays = h.arrays & (has_thickness | has_transparency | has_colors);
+    // Beside an array, files hold junk as default.
+    if (model.thickness.empty()) model.default_thickness = h.default_thickness;
+    if (model.transparency.empty()) model.default_transparency = h.default_transparency;
+    if (model.colors.empty()) model.default_color = h.default_color;
     check_numbers(source.name, model);
     return model;
 }
+
+Groom read_hair_format(const HairSource& source, const HairReadSettings&) {
+    const HairHeader header = read_header(source);
+    Groom groom;
+    groom.model = read_model(source, header);
+    groom.extras = extras_of(header);
+    groom.description.assign(header.info.begin(), std::find(header.info.begin(), header.info.end(), '\0'));
+    return groom;
+}
+
+}  // namespace
+
+const HairReader hair_format_reader{
+    .name = "HAIR",
+    .extension = ".hair",
+    .beginning = "\"HAIR\"",
+    .animated = false,
+    .recognises = begins_as_hair,
+    .read = read_hair_format,
+};
 
 }  // namespace hairbake

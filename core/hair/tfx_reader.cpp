@@ -1,17 +1,19 @@
-#include "core/hair/tfx_file.h"
+#include "core/hair/tfx_reader.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
 #include <limits>
+#include <string>
+#include <vector>
 
-#include "core/hair/hair_source.h"
+#include "core/hair/hair_format_writer.h"
 
 namespace hairbake {
 namespace {
 
-/// The headers as their bytes lie in the file.
+/// The headers as they lie in the file.
 struct Header4 {
     float version;
     std::uint32_t strands, points, positions, strand_uv, vertex_uv, thickness, colors;
@@ -27,7 +29,7 @@ struct Header3 {
 static_assert(std::endian::native == std::endian::little, "TressFX files are copied to memory as they are");
 static_assert(sizeof(Header4) == 160 && sizeof(Header3) == 296);
 
-/// What either header says of what is read.
+/// The fields of either header that are read.
 struct Contents {
     float version = 0;
     std::uint64_t header_bytes = 0;
@@ -65,8 +67,8 @@ Contents read_contents(const HairSource& source) {
                                  "; read are the binary TressFX versions 3.0 and 4.0");
 }
 
-/// Before memory is taken. No product here overflows: counts are below 2^32, and 16 * count is formed only for counts
-/// that the file's size bounds.
+/// Runs before memory is taken. No product overflows: counts are below 2^32, and 16 * count is formed only after the
+/// file's size has bounded count.
 void check_counts(const HairSource& source, const Contents& c) {
     const std::string counts = std::to_string(c.strands) + " strands of " + std::to_string(c.points) + " points";
     if (c.strands > 0 && c.points == 0) refuse_hair(source.name, "header: " + counts + "; a strand has at least one");
@@ -88,7 +90,7 @@ void check_array(const HairSource& source, const Contents& c, const char* what, 
                                  std::to_string(source.size));
 }
 
-/// `count` times the first three of `stride` floats.
+/// The first three of each `stride` floats, `count` times.
 std::vector<Vec3f> read_triples(const HairSource& source, std::uint64_t offset, std::size_t count, std::size_t stride) {
     std::vector<Vec3f> triples;
     triples.reserve(count);
@@ -102,15 +104,6 @@ std::vector<Vec3f> read_triples(const HairSource& source, std::uint64_t offset, 
     return triples;
 }
 
-void describe(HairModel& model, const Contents& c) {
-    model.format = c.version == 4 ? "TressFX 4.0" : "TressFX 3.0";
-    std::string text = "from " + model.format;
-    if (c.follow_hairs > 0) text += ", without its " + std::to_string(c.follow_hairs) + " follow hairs a guide";
-    std::memcpy(model.info.data(), text.data(), std::min(text.size(), model.info.size()));
-}
-
-}  // namespace
-
 bool begins_as_tfx(std::span<const std::byte> bytes) {
     float version = 0;
     if (bytes.size() < sizeof version) return false;
@@ -118,23 +111,56 @@ bool begins_as_tfx(std::span<const std::byte> bytes) {
     return version == 3 || version == 4;
 }
 
-HairModel read_tfx_format(const HairSource& source) {
-    const Contents c = read_contents(source);
+std::string format_of(const Contents& c) { return c.version == 4 ? "TressFX 4.0" : "TressFX 3.0"; }
+
+std::string description_of(const Contents& c) {
+    std::string text = "from " + format_of(c);
+    if (c.follow_hairs > 0) text += ", without its " + std::to_string(c.follow_hairs) + " follow hairs a guide";
+    return text;
+}
+
+/// First point of each strand, and the number of points at the end.
+std::vector<std::uint32_t> strands_of(const Contents& c) {
+    std::vector<std::uint32_t> begin(static_cast<std::size_t>(c.strands) + 1);
+    for (std::size_t s = 0; s < begin.size(); ++s) begin[s] = static_cast<std::uint32_t>(s * c.points);
+    return begin;
+}
+
+HairModel read_model(const HairSource& source, const Contents& c) {
     check_counts(source, c);
     const auto count = static_cast<std::size_t>(c.strands * c.points);
-    HairModel model;
-    describe(model, c);
-    // Every strand has the same number of points, so the HAIR form needs no segments array, which would end at 65,536.
-    model.has_segments_array = false;
-    model.default_segments = c.points > 0 ? static_cast<std::uint32_t>(c.points - 1) : 0;
     if (count > 0) check_array(source, c, "positions", c.positions, 4 * c.floats_a_position * count);
     if (c.colors != 0) check_array(source, c, "vertex colours", c.colors, 16 * std::uint64_t{count});
-    model.strand_begin.resize(static_cast<std::size_t>(c.strands) + 1);
-    for (std::size_t s = 0; s <= c.strands; ++s) model.strand_begin[s] = static_cast<std::uint32_t>(s * c.points);
+    HairModel model;
+    model.format = format_of(c);
+    model.strand_begin = strands_of(c);
     model.positions = read_triples(source, c.positions, count, c.floats_a_position);
     if (c.colors != 0) model.colors = read_triples(source, c.colors, count, 4);
     check_numbers(source.name, model);
     return model;
 }
+
+Groom read_tfx(const HairSource& source, const HairReadSettings&) {
+    const Contents contents = read_contents(source);
+    Groom groom;
+    groom.model = read_model(source, contents);
+    groom.description = description_of(contents);
+    groom.extras = make_hair_file_extras(groom.model, groom.description);
+    // Every strand has the same number of points. So the HAIR form needs no segments array, which ends at 65,536.
+    groom.extras.has_segments_array = false;
+    groom.extras.default_segments = contents.points > 0 ? static_cast<std::uint32_t>(contents.points - 1) : 0;
+    return groom;
+}
+
+}  // namespace
+
+const HairReader tfx_reader{
+    .name = "TressFX",
+    .extension = ".tfx",
+    .beginning = "the version 3.0 or 4.0 of a TressFX file (a float)",
+    .animated = false,
+    .recognises = begins_as_tfx,
+    .read = read_tfx,
+};
 
 }  // namespace hairbake

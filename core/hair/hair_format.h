@@ -1,4 +1,4 @@
-// The first 128 bytes of a HAIR file. Private to the reader and the writer.
+// Cem Yuksel's HAIR format: its header, its reader and its writer's shared parts. Private to core/hair.
 #pragma once
 
 #include <array>
@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "core/base/vec.h"
+#include "core/hair/hair_reader.h"
 
 namespace hairbake {
 
@@ -18,7 +19,7 @@ inline constexpr std::uint32_t has_transparency = 8;  ///< a float a point
 inline constexpr std::uint32_t has_colors = 16;       ///< three floats a point
 inline constexpr std::uint32_t known_arrays = 31;
 
-/// As the bytes lie in the file, little-endian.
+/// The first 128 bytes as they lie in the file, little-endian.
 struct HairHeader {
     std::array<char, 4> magic{'H', 'A', 'I', 'R'};
     std::uint32_t strands = 0, points = 0, arrays = has_points, default_segments = 0;
@@ -29,5 +30,9 @@ struct HairHeader {
 
 static_assert(std::endian::native == std::endian::little, "HAIR files are copied to and from memory as they are");
 static_assert(sizeof(HairHeader) == 128 && sizeof(Vec3f) == 12 && std::is_trivially_copyable_v<HairHeader>);
+
+/// Reads every combination of the array bits but those without the points array, which the format demands. The file
+/// must have exactly the length that its header implies.
+extern const HairReader hair_format_reader;
 
 }  // namespace hairbake

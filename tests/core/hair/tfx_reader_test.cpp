@@ -1,6 +1,4 @@
-// TressFX files, built byte by byte, and the real ones where they are.
-#include "core/hair/tfx_file.h"
-
+// TressFX files, built byte by byte, and real ones, which are skipped where they are missing.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -9,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/hair/hair_file.h"
+#include "core/hair/hair_format_writer.h"
 #include "core/hair/strand_geometry.h"
 #include "tests/support/shared_data.h"
 #include "tests/support/temporary_folder.h"
@@ -51,19 +50,9 @@ TEST(TfxFile, ReadsPositionsAndColoursOfBothVersionsAndNothingElse) {
         EXPECT_EQ(model.default_thickness, 0);
         EXPECT_EQ(model.default_transparency, 0);
     }
-    const std::string text = read_hair(make_tfx_bytes(3, 1, 4), "small.tfx").info.data();
-    EXPECT_EQ(text, "from TressFX 3.0, without its 7 follow hairs a guide");
-}
-
-TEST(TfxFile, IsRecognisedByItsContentWhateverItsName) {
-    EXPECT_EQ(read_hair(make_tfx_bytes(4, 2, 4), "misnamed.hair").vertex_count(), 8u);
-    EXPECT_EQ(read_hair(make_hair_bytes(31, {2, 1}), "misnamed.tfx").vertex_count(), 5u);
-    const TemporaryFolder folder;
-    const HairBytes file = make_tfx_bytes(3, 2, 4);
-    std::ofstream(folder / "no_extension", std::ios::binary)
-        .write(reinterpret_cast<const char*>(file.bytes.data()), static_cast<std::streamsize>(file.bytes.size()));
-    EXPECT_EQ(read_hair(folder / "no_extension").vertex_count(), 8u);
-    EXPECT_TRUE(is_hair_file(folder / "no_extension"));
+    const Groom groom = read_groom(make_tfx_bytes(3, 1, 4), "small.tfx");
+    EXPECT_EQ(groom.description, "from TressFX 3.0, without its 7 follow hairs a guide");
+    EXPECT_EQ(groom.extras.info.data(), groom.description);
 }
 
 TEST(TfxFile, AsksForAWidth) {
@@ -83,9 +72,9 @@ TEST(TfxFile, AsksForAWidth) {
 TEST(TfxFile, IsWrittenAsHairWithoutASegmentsArrayHoweverLongTheStrands) {
     // A segments array ends at 65,536 points a strand; here are 70,000.
     for (const std::uint32_t points : {4u, 70'000u}) {
-        const HairModel model = read_hair(make_tfx_bytes(4, 2, points), "long.tfx");
+        const auto [model, extras, description, warnings] = read_groom(make_tfx_bytes(4, 2, points), "long.tfx");
         std::ostringstream written;
-        write_hair(model, written);
+        write_hair(model, written, extras);
         const HairModel again = read_hair(std::as_bytes(std::span(written.view())), "long.hair");
         EXPECT_EQ(again.positions, model.positions);
         EXPECT_EQ(again.strand_begin, model.strand_begin);
@@ -182,11 +171,11 @@ TEST(TfxFile, RefusesNumbersThatAreNotFiniteNamingStrandAndVertex) {
 TEST(TfxRealFiles, SintelHoldsThePointsOfItsHairForm) {
     const auto tfx = shared_data("hair/sintel.tfx"), hair = shared_data("hair/sintel.hair");
     if (!exists(tfx) || !exists(hair)) GTEST_SKIP() << missing_data(tfx);
-    const HairModel a = read_hair(tfx), b = read_hair(hair);
-    EXPECT_EQ(a.strand_begin, b.strand_begin);  // 11,400 strands of 16 points
-    EXPECT_EQ(a.positions, b.positions);        // to the last bit: the .hair was derived from this file
-    EXPECT_EQ(a.default_segments, b.default_segments);
-    EXPECT_EQ(a.has_segments_array, b.has_segments_array);
+    const Groom a = read_groom(tfx), b = read_groom(hair);
+    EXPECT_EQ(a.model.strand_begin, b.model.strand_begin);  // 11,400 strands of 16 points
+    EXPECT_EQ(a.model.positions, b.model.positions);        // to the last bit: the .hair was derived from this file
+    EXPECT_EQ(a.extras.default_segments, b.extras.default_segments);
+    EXPECT_EQ(a.extras.has_segments_array, b.extras.has_segments_array);
 }
 
 TEST(TfxRealFiles, RatboyHasThirtyOneDegenerateSegments) {

@@ -9,20 +9,19 @@
 //        296 bytes.
 // Source: AMD's published header TressFXFileFormat.h of TressFX 3 and 4, and files of either version.
 //
-// What is read: positions, and the vertex colours' RGB. What is not:
-// - inverse masses, UVs, guide flags, the colours' fourth component: a HairModel has no place for them;
+// Read are positions, and the RGB of the vertex colours. Left out are:
+// - inverse masses, UVs, guide flags and the fourth component of the colours: a HairModel has no place for them;
 // - the thickness array: no published exporter writes it, AMD's loaders do not read it, and its unit is stated nowhere.
-//   A TressFX file therefore never has a width, and a bake needs strand.width;
-// - follow hairs: the engine grows them at run time at random around the guides that the file holds, so that they are
-//   nobody's vertices. The model's free text names their number.
+//   So a TressFX file never gives a width, and a bake needs strand.width;
+// - follow hairs: the engine generates them at run time, at random around the guides in the file. They are no vertices
+//   of the file. The groom's description states their number.
 #pragma once
 
-#include <cstddef>
-#include <span>
+#include "core/hair/hair_reader.h"
 
 namespace hairbake {
 
-/// Whether a file that begins with `bytes` (four are enough) says that it is a TressFX file of a version read here.
-bool begins_as_tfx(std::span<const std::byte> bytes);
+/// Recognises a file by its version number, 3.0 or 4.0.
+extern const HairReader tfx_reader;
 
 }  // namespace hairbake

@@ -1,0 +1,37 @@
+// The interface of the groom readers, and their table. Private to the readers and to hair_file.cpp.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+
+#include "core/hair/groom.h"
+#include "core/hair/hair_source.h"
+
+namespace hairbake {
+
+/// Bytes from the beginning of a file that recognise() gets; fewer where the file is shorter.
+inline constexpr std::size_t recognition_bytes = 16;
+
+/// One format of groom files.
+struct HairReader {
+    std::string_view name;       ///< of the format, for messages: "TressFX"
+    std::string_view extension;  ///< in lower case with the dot: ".tfx"
+    std::string_view beginning;  ///< how its files begin, for messages
+    bool animated;               ///< whether read() looks at the time of the settings
+
+    /// Whether a file that begins with `bytes` is of this format. Nothing else decides who reads a file.
+    bool (*recognises)(std::span<const std::byte> bytes);
+
+    /// Reads the file. It is also called for a file that begins as no format does but has this extension, and must then
+    /// refuse it. Leaves `warnings` about the time to the caller. Errors: as read_groom() says.
+    Groom (*read)(const HairSource& source, const HairReadSettings& settings);
+};
+
+/// All readers. One more reader is a file of its own and a line in hair_readers.cpp.
+std::span<const HairReader* const> hair_readers();
+
+/// Throws Error(bad_input) for a file that begins as none of the formats: what was found and what is allowed.
+[[noreturn]] void refuse_beginning(const HairSource& source);
+
+}  // namespace hairbake
