@@ -60,12 +60,6 @@ private:
     std::map<std::string, std::string> digests_;
 };
 
-std::string shape_text(const std::vector<std::size_t>& shape) {
-    std::string text = "[";
-    for (const std::size_t n : shape) text += (text.size() > 1 ? ", " : "") + std::to_string(n);
-    return text + "]";
-}
-
 void expect_shape(const fs::path& file, const std::vector<std::size_t>& found,
                   const std::vector<std::size_t>& allowed) {
     if (found != allowed) refuse(file, "has the shape " + shape_text(found) + "; allowed is " + shape_text(allowed));

@@ -72,6 +72,12 @@ std::string npy_header(std::span<const std::size_t> shape) {
 std::span<const std::byte> npy_data(std::span<const float> values) { return std::as_bytes(values); }
 std::span<const std::byte> npy_data(std::span<const Vec3f> values) { return std::as_bytes(values); }
 
+std::string shape_text(std::span<const std::size_t> shape) {
+    std::string text = "[";
+    for (const std::size_t n : shape) text += (text.size() > 1 ? ", " : "") + std::to_string(n);
+    return text + "]";
+}
+
 NpyArray read_npy(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     if (!stream) throw Error(ErrorKind::bad_input, file.string() + ": " + std::generic_category().message(errno));

@@ -22,6 +22,9 @@ struct NpyArray {
     std::vector<float> values;  ///< the product of the shape
 };
 
+/// "[2, 6, 4, 4, 3]", for messages.
+std::string shape_text(std::span<const std::size_t> shape);
+
 /// Reads a file of the kind that hairbake writes. Throws Error(bad_input) naming the file for any other .npy (another
 /// type, Fortran order, version), a truncated or over-long one; sizes are checked before memory is taken.
 NpyArray read_npy(const std::filesystem::path& file);

@@ -5,10 +5,13 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/output/manifest.h"
 #include "core/output/npy.h"
+#include "core/tools/error_statistics.h"
 
 namespace hairbake {
 namespace fs = std::filesystem;
@@ -16,12 +19,29 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-bool has(const std::vector<std::string>& files, const std::string& name) {
-    return std::find(files.begin(), files.end(), name) != files.end();
+/// Names of the .npy files of a result, without the ending.
+std::vector<std::string> arrays_of(const fs::path& folder) {
+    std::vector<std::string> names;
+    for (const std::string& file : files_of_result(folder)) {
+        if (fs::path(file).extension() != ".npy") continue;
+        if (fs::path(file).has_parent_path())
+            throw Error(ErrorKind::bad_input, (folder / "manifest.json").string() + " lists the file " + file +
+                                                  "; allowed are names of files in its folder");
+        names.push_back(fs::path(file).stem().string());
+    }
+    return names;
 }
 
-/// The larger of the two; a NaN once met stays, which std::max would lose.
-double worse(double worst, double value) { return std::isnan(worst) || value <= worst ? worst : value; }
+bool has(const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// The first list, and then what only the second one has.
+std::vector<std::string> merged(std::vector<std::string> first, const std::vector<std::string>& second) {
+    for (const std::string& name : second)
+        if (!has(first, name)) first.push_back(name);
+    return first;
+}
 
 /// The two arrays have the same size. A NaN on either side makes every figure NaN (null in JSON).
 Json statistics(std::span<const float> first, std::span<const float> second) {
@@ -43,52 +63,59 @@ Json statistics(std::span<const float> first, std::span<const float> second) {
             {"rms_over_largest", largest > 0 ? rms / largest : rms}};
 }
 
-std::string shape_text(const std::vector<std::size_t>& shape) {
-    std::string text = "[";
-    for (const std::size_t n : shape) text += (text.size() > 1 ? ", " : "") + std::to_string(n);
-    return text + "]";
+/// How many cube maps an array [count, 6, n, n, 3] holds; 0 for any other shape.
+std::size_t maps_in(const std::vector<std::size_t>& shape) {
+    return shape.size() == 5 && shape[1] == 6 && shape[2] == shape[3] && shape[4] == 3 ? shape[0] : 0;
 }
 
-void compare_file(const fs::path& first, const fs::path& second, const std::string& name, Json& report) {
-    const NpyArray a = read_npy(first / (name + ".npy")), b = read_npy(second / (name + ".npy"));
-    if (a.shape != b.shape) {
-        report[name] = "shapes " + shape_text(a.shape) + " and " + shape_text(b.shape) + " cannot be compared";
-        report["same"] = false;
-        return;
+/// What the report says of one array.
+struct Comparison {
+    bool same = false;
+    Json entries = Json::object();
+};
+
+Json sentence(const std::string& name, const std::string& text) { return Json::object({{name, text}}); }
+
+Comparison compare_arrays(const std::string& name, const NpyArray& a, const NpyArray& b) {
+    if (a.shape != b.shape)
+        return {false, sentence(name, "shapes " + shape_text(a.shape) + " and " + shape_text(b.shape) +
+                                          " cannot be compared")};
+    Comparison comparison{a.values == b.values};
+    const std::size_t maps = maps_in(a.shape);
+    if (maps == 0) {
+        comparison.entries[name] = statistics(a.values, b.values);
+        return comparison;
     }
-    report["same"] = report["same"].get<bool>() && a.values == b.values;
-    if (name != "specular") {
-        report[name] = statistics(a.values, b.values);
-        return;
-    }
-    const std::size_t maps = a.shape.empty() ? 0 : a.shape[0], size = maps > 0 ? a.values.size() / maps : 0;
+    const std::size_t size = a.values.size() / maps;
     for (std::size_t m = 0; m < maps; ++m) {
-        char label[32];
-        std::snprintf(label, sizeof label, "specular_%02zu", m);
-        report[label] =
+        char number[24];
+        std::snprintf(number, sizeof number, "_%02zu", m);
+        comparison.entries[name + number] =
             statistics(std::span(a.values).subspan(m * size, size), std::span(b.values).subspan(m * size, size));
     }
+    return comparison;
 }
 
 }  // namespace
 
 std::string compare(const fs::path& first, const fs::path& second) {
-    const std::vector<std::string> in_first = files_of_result(first), in_second = files_of_result(second);
+    const std::vector<std::string> in_first = arrays_of(first), in_second = arrays_of(second);
     Json report{{"first", first.string()}, {"second", second.string()}, {"same", true}};
-    bool any = false;  // file in common
-    for (const std::string name : {"transmittance", "diffuse", "specular"}) {
-        const bool a = has(in_first, name + ".npy"), b = has(in_second, name + ".npy");
-        if (a != b) {
-            report[name] = a ? "only in the first" : "only in the second";
-            report["same"] = false;
-        }
-        if (!a || !b) continue;
-        compare_file(first, second, name, report);
-        any = true;
+    bool any_in_common = false, same = true;
+    for (const std::string& name : merged(in_first, in_second)) {
+        const bool a = has(in_first, name), b = has(in_second, name);
+        Comparison comparison{false, sentence(name, a ? "only in the first" : "only in the second")};
+        if (a && b)
+            comparison = compare_arrays(name, read_npy(first / (name + ".npy")), read_npy(second / (name + ".npy")));
+        any_in_common |= a && b;
+        same &= comparison.same;
+        // emplace: a name from a manifest must not replace "first", "second" or "same".
+        for (const auto& [key, entry] : comparison.entries.items()) report.emplace(key, entry);
     }
-    if (!any)
+    if (!any_in_common)
         throw Error(ErrorKind::bad_input, first.string() + " and " + second.string() +
                                               " have no .npy file in common; bake both with the output npy");
+    report["same"] = same;
     return report.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -12,18 +12,16 @@
 #include "core/output/canvas.h"
 #include "core/output/file_sink.h"
 #include "core/output/picture_encoding.h"
+#include "core/tools/error_statistics.h"
 
 namespace hairbake {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The larger of the two; a NaN once met stays, which std::max would lose.
-double worse(double worst, double value) { return std::isnan(worst) || value <= worst ? worst : value; }
-
 double largest(const Vec3f& v) { return worse(worse(std::abs(v.x), std::abs(v.y)), std::abs(v.z)); }
 
-/// Of all values of some pixels.
+/// Sums over the channels of some pixels.
 struct Sums {
     std::uint64_t pixels = 0;
     double squares = 0, difference = 0, first = 0;
@@ -57,6 +55,7 @@ ImageFile read_linear(const std::filesystem::path& file, Progress& progress) {
     return image;
 }
 
+/// The next of 1, 2 and 5 times a power of ten; 1 where there is none.
 double rounded_up(double value) {
     if (!(value > 0) || !std::isfinite(value)) return 1;
     const double power = std::pow(10.0, std::floor(std::log10(value)));
@@ -65,7 +64,7 @@ double rounded_up(double value) {
     return 10 * power;
 }
 
-/// 0 to 1 over black, blue, red, yellow and white.
+/// Black at 0, then blue, red and yellow, white at 1; green for NaN.
 Color false_color(double share) {
     if (std::isnan(share)) return {0, 255, 0};
     constexpr std::array<std::array<double, 3>, 6> stops{
@@ -98,35 +97,51 @@ void write_false_colors(const std::vector<Vec3f>& difference, int width, int hei
     write_whole_file(file, encode_png(canvas.rgb(), canvas.width(), canvas.height(), {}));
 }
 
-}  // namespace
-
-std::string diff(const std::filesystem::path& first, const std::filesystem::path& second,
-                 const std::optional<std::filesystem::path>& picture, std::optional<double> scale, Progress& progress) {
+void check_arguments(const std::optional<std::filesystem::path>& picture, std::optional<double> scale) {
     if (picture && picture->extension() != ".png")
         throw Error(ErrorKind::usage, "out is " + picture->string() + "; allowed is a name that ends in .png", "out");
     if (scale && !(*scale > 0 && std::isfinite(*scale)))
         throw Error(ErrorKind::usage, "scale is " + std::to_string(*scale) + "; allowed is a positive number", "scale");
+}
+
+struct Difference {
+    std::vector<Vec3f> pixels;  ///< second - first
+    double maximum = 0;         ///< of the absolute values
+    Sums all, lit;              ///< lit: the pixels where either picture is not black
+};
+
+/// The pictures have the same size.
+Difference difference_of(const ImageFile& a, const ImageFile& b) {
+    Difference difference;
+    difference.pixels.reserve(a.pixels.size());
+    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+        difference.pixels.push_back(b.pixels[i] - a.pixels[i]);
+        difference.maximum = worse(difference.maximum, largest(difference.pixels.back()));
+        difference.all.add(a.pixels[i], b.pixels[i]);
+        if (a.pixels[i] != Vec3f() || b.pixels[i] != Vec3f()) difference.lit.add(a.pixels[i], b.pixels[i]);
+    }
+    return difference;
+}
+
+}  // namespace
+
+std::string diff(const std::filesystem::path& first, const std::filesystem::path& second,
+                 const std::optional<std::filesystem::path>& picture, std::optional<double> scale, Progress& progress) {
+    check_arguments(picture, scale);
     const ImageFile a = read_linear(first, progress), b = read_linear(second, progress);
     if (a.width != b.width || a.height != b.height)
         throw Error(ErrorKind::bad_input, second.string() + " is " + std::to_string(b.width) + " x " +
                                               std::to_string(b.height) + " pixels; allowed is the size of " +
                                               first.string() + ", " + std::to_string(a.width) + " x " +
                                               std::to_string(a.height));
-    Sums all, lit;
-    double maximum = 0;
-    std::vector<Vec3f> difference(a.pixels.size());
-    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-        difference[i] = b.pixels[i] - a.pixels[i];
-        maximum = worse(maximum, largest(difference[i]));
-        all.add(a.pixels[i], b.pixels[i]);
-        if (a.pixels[i] != Vec3f() || b.pixels[i] != Vec3f()) lit.add(a.pixels[i], b.pixels[i]);
-    }
+    const Difference difference = difference_of(a, b);
+    const Sums &all = difference.all, &lit = difference.lit;
     Json report{{"first", first.string()},
                 {"second", second.string()},
                 {"width", a.width},
                 {"height", a.height},
                 {"rmse", all.rmse()},
-                {"max_abs", maximum},
+                {"max_abs", difference.maximum},
                 {"bias", all.difference / all.values()},
                 {"mean", all.mean()},
                 {"rmse_over_mean", all.relative()},
@@ -137,8 +152,8 @@ std::string diff(const std::filesystem::path& first, const std::filesystem::path
                   {"mean", lit.mean()},
                   {"rmse_over_mean", lit.relative()}}}};
     if (picture) {
-        const double shown = scale.value_or(rounded_up(maximum));
-        write_false_colors(difference, a.width, a.height, shown, *picture);
+        const double shown = scale.value_or(rounded_up(difference.maximum));
+        write_false_colors(difference.pixels, a.width, a.height, shown, *picture);
         report["scale"] = shown;
     }
     return report.dump(2, ' ', false, Json::error_handler_t::replace);

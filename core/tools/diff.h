@@ -9,21 +9,23 @@
 
 namespace hairbake {
 
-/// Statistics of second - first for two linear pictures (OpenEXR, HDR, PFM) of one size, at most 16384 x 16384, as a
-/// JSON object: width, height, and over all pixels and channels rmse, max_abs, bias, mean (of the first),
-/// rmse_over_mean; "lit" has pixels, rmse, bias, mean and rmse_over_mean over the pixels where either is not black. A
-/// NaN on either side makes every figure NaN (null). With `picture` (a .png), writes the difference in false colours:
-/// each pixel's largest |second - first| over the channels, from black (0) over blue, red and yellow to white (`scale`
-/// and more; without one the largest difference, rounded up to 1, 2 or 5 times a power of ten), NaN in green, with a
-/// labelled scale below; "scale" tells it. Throws Error(bad_input) naming the file for what is no picture or has
-/// another size, Error(usage) for a scale that is not positive or another ending.
+/// Compares two linear pictures and returns a JSON object: width, height, and over all pixels and channels rmse,
+/// max_abs, bias, mean (of the first) and rmse_over_mean of second - first; "lit" has pixels, rmse, bias, mean and
+/// rmse_over_mean over the pixels where either picture is not black. A NaN on either side makes every figure null.
+/// - first, second: floating-point pictures (OpenEXR, HDR, PFM) of one size, at most 16384 x 16384.
+/// - picture: a .png to write the difference to, in false colours: each pixel's largest |second - first| over the
+///   channels, from black (0) over blue, red and yellow to white (`scale` and more), NaN in green. A labelled scale
+///   stands below.
+/// - scale: > 0; without one, the largest difference, rounded up to 1, 2 or 5 times a power of ten. The report states
+/// it. Throws Error(bad_input) naming the file when it is no such picture or has another size. Throws Error(usage) for
+/// a scale that is not positive or a picture with another ending. Throws Error(cancelled).
 std::string diff(const std::filesystem::path& first, const std::filesystem::path& second,
                  const std::optional<std::filesystem::path>& picture, std::optional<double> scale, Progress& progress);
 
-/// Removes what a diff() that does not end has written of `picture`.
+/// Removes the unfinished part of `picture` that an interrupted diff() leaves.
 void discard_diff_part(const std::filesystem::path& picture) noexcept;
 
-/// A report of diff() in lines for people.
+/// A report of diff() as lines for people.
 std::string diff_as_lines(const std::string& report);
 
 }  // namespace hairbake

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
@@ -70,6 +72,79 @@ TEST(Compare, ANanIsNeverMasked) {
     const Json report = Json::parse(compare(folder / "a", folder / "b"));
     EXPECT_EQ(report["same"], false);
     for (const char* name : {"max_abs", "rms", "bias"}) EXPECT_TRUE(report["transmittance"][name].is_null()) << name;
+}
+
+/// A result with every array that a bake writes.
+BakeResult full_result() {
+    using test_support::counted_array;
+    BakeResult result = small_result();
+    std::vector<VertexArray>& arrays = result.parts[0].arrays;
+    arrays.push_back(counted_array(transmittance_sh_kind(), 5, 4, 0.5f));
+    arrays.push_back(counted_array(bent_cone_kind(), 5, 4, 0.25f));
+    arrays.push_back(counted_array(receiver_kind(), 2, 2, 0.125f));
+    return result;
+}
+
+TEST(Compare, SeesADifferenceInAnyOneArray) {
+    const TemporaryFolder folder;
+    write_npy_result(full_result(), folder / "a");
+    struct Change {
+        std::string entry;
+        std::function<void(BakeResult&)> make;
+    };
+    std::vector<Change> changes{
+        {"diffuse", [](BakeResult& r) { r.parts[1].maps->lobes[0].cubes[0][0].x += 0.25f; }},
+        {"specular_02", [](BakeResult& r) { r.parts[1].maps->lobes[1].cubes[2][5].z += 0.25f; }},
+    };
+    for (std::size_t k = 0; k < full_result().parts[0].arrays.size(); ++k) {
+        const std::string name(full_result().parts[0].arrays[k].kind->name);
+        changes.push_back({name, [k](BakeResult& r) { r.parts[0].arrays[k].values.back() += 0.25f; }});
+    }
+    ASSERT_EQ(changes.size(), 2 + array_kinds().size());
+    for (const Change& change : changes) {
+        SCOPED_TRACE(change.entry);
+        BakeResult other = full_result();
+        change.make(other);
+        write_npy_result(other, folder / "b");
+        const Json report = Json::parse(compare(folder / "a", folder / "b"));
+        EXPECT_EQ(report["same"], false);
+        EXPECT_NE(as_table(report.dump()).find(change.entry + " "), std::string::npos);
+        for (const auto& [name, entry] : report.items())
+            if (entry.is_object()) {
+                EXPECT_EQ(entry["max_abs"], name == change.entry ? 0.25 : 0.0) << name;
+            }
+    }
+    const Json same = Json::parse(compare(folder / "a", folder / "a"));
+    EXPECT_EQ(same["same"], true);
+    EXPECT_EQ(same.size(), 3u + 4 + 1 + 3);  // first, second, same; arrays; diffuse; specular maps
+}
+
+TEST(Compare, AnArrayThatOnlyOneResultHasIsNamed) {
+    const TemporaryFolder folder;
+    BakeResult without = small_result();
+    without.parts.pop_back();  // the irradiance
+    write_npy_result(without, folder / "a");
+    write_npy_result(small_result(), folder / "b");
+    const Json report = Json::parse(compare(folder / "a", folder / "b"));
+    EXPECT_EQ(report["diffuse"], "only in the second");
+    EXPECT_EQ(report["specular"], "only in the second");
+    EXPECT_EQ(report["same"], false);
+}
+
+TEST(Compare, AManifestCannotNameFilesOutsideItsFolder) {
+    const TemporaryFolder folder;
+    write_npy_result(small_result(), folder / "a");
+    write_npy_result(small_result(), folder / "b");
+    std::string manifest = read_manifest_text(folder / "b" / "manifest.json");
+    manifest.replace(manifest.find("diffuse.npy"), 11, "../d.npy");
+    std::ofstream(folder / "b" / "manifest.json") << manifest;
+    try {
+        compare(folder / "a", folder / "b");
+        ADD_FAILURE();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::bad_input);
+        EXPECT_NE(std::string(error.what()).find("../d.npy"), std::string::npos) << error.what();
+    }
 }
 
 TEST(Compare, NamesWhatCannotBeCompared) {
