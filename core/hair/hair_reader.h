@@ -20,7 +20,7 @@ struct HairReader {
     std::string_view beginning;  ///< how its files begin, for messages
     bool animated;               ///< whether read() looks at the time of the settings
 
-    /// Whether a file that begins with `bytes` is of this format. Nothing else decides who reads a file.
+    /// Whether a file that begins with `bytes` is of this format. Nothing else decides which reader gets a file.
     bool (*recognises)(std::span<const std::byte> bytes);
 
     /// Reads the file. It is also called for a file that begins as no format does but has this extension, and must then

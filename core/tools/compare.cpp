@@ -36,7 +36,7 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// The first list, and then what only the second one has.
+/// The names of the first list, then those that only the second one has.
 std::vector<std::string> merged(std::vector<std::string> first, const std::vector<std::string>& second) {
     for (const std::string& name : second)
         if (!has(first, name)) first.push_back(name);
@@ -109,8 +109,9 @@ std::string compare(const fs::path& first, const fs::path& second) {
             comparison = compare_arrays(name, read_npy(first / (name + ".npy")), read_npy(second / (name + ".npy")));
         any_in_common |= a && b;
         same &= comparison.same;
-        // emplace: a name from a manifest must not replace "first", "second" or "same".
-        for (const auto& [key, entry] : comparison.entries.items()) report.emplace(key, entry);
+        // An array must not replace "first", "second" or "same", whatever its name in the manifest.
+        for (const auto& [key, entry] : comparison.entries.items())
+            if (!report.contains(key)) report[key] = entry;
     }
     if (!any_in_common)
         throw Error(ErrorKind::bad_input, first.string() + " and " + second.string() +

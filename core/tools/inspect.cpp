@@ -141,8 +141,8 @@ Json environment_facts(const fs::path& file, Progress& progress) {
     return facts;
 }
 
-/// Blocks of a manifest that `hairbake info` leaves out: what every manifest has, what repeats the request, and what
-/// has an entry for each map.
+/// Blocks of a manifest that `hairbake info` leaves out: those equal in every manifest, those that repeat the request,
+/// and those with an entry for each map.
 constexpr std::array<std::string_view, 7> left_out{"format",      "format_version", "request", "irradiance",
                                                    "conventions", "files",          "measured"};
 

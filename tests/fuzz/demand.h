@@ -1,4 +1,4 @@
-// What a fuzz target promises of every input.
+// Checks of the promises that a fuzz target makes for every input.
 #pragma once
 
 #include <cstdlib>
@@ -6,7 +6,7 @@
 
 namespace hairbake {
 
-/// Ends the run, which is a finding, with `what` was promised and does not hold.
+/// Ends the run with a finding unless `ok`. `what` names the promise.
 inline void demand(bool ok, const char* what) {
     if (ok) return;
     std::cerr << "broken promise: " << what << "\n";

@@ -1,4 +1,4 @@
-// Any bytes at all as an HDR or PFM picture: refused, or read as a lat-long map or a cube of valid radiance, whose
+// Any bytes as an HDR or PFM picture: refused, or read as a lat-long map or a cube of valid radiance, whose
 // lights and harmonics carry all of its energy. (The decoders are OpenImageIO's; other formats are left to it alone.)
 #include <unistd.h>
 

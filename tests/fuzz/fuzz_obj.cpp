@@ -1,4 +1,4 @@
-// Any bytes at all as an OBJ file: refused as bad input, or read as a mesh whose every index and number is sound.
+// Any bytes as an OBJ file: they are refused as bad input, or read as a mesh with valid indices and numbers.
 #include <cmath>
 #include <cstdint>
 

@@ -1,4 +1,4 @@
-// Any bytes at all as a request: refused as a usage error, or taken, and then what is written reads the same.
+// Any bytes as a request: they are refused as a usage error, or taken, and the request that is written then reads the same.
 #include <cstdint>
 #include <string_view>
 

@@ -1,4 +1,4 @@
-// Valid HAIR files: what is read, and that writing gives the same bytes back.
+// Valid HAIR files: reading them, and writing them back as the same bytes.
 #include "core/hair/hair_format_writer.h"
 
 #include <gtest/gtest.h>

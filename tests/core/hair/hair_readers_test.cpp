@@ -1,4 +1,4 @@
-// The choice of a reader, and what every reader promises.
+// The choice of a reader, and the promises that every reader makes.
 #include <gtest/gtest.h>
 
 #include <fstream>
