@@ -128,6 +128,7 @@ void transmittance_stage(BakeResult& result, BakeProgress& progress) {
     TransmittanceScene baked{strands, occluder};
     baked.receiver = result.receiver ? &*result.receiver : nullptr;
     baked.receiver_is_occluder = baked.receiver && result.hair_inputs.receiver == result.hair_inputs.occluder;
+    baked.keep_density = result.request.wants("vdb");
     run_stage(result, progress, "transmittance", [&] {
         naming_file(*result.request.hair, [&] {
             strands = make_strand_geometry(*result.hair, result.request.strand);

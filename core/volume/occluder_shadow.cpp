@@ -107,7 +107,7 @@ void OccluderShadow::draw(const Raster& raster, const Progress& progress, Scratc
     }
 }
 
-void OccluderShadow::look(const Points& points, std::span<const Vec3d> directions, const Progress& progress,
+void OccluderShadow::visible(const Points& points, std::span<const Vec3d> directions, const Progress& progress,
                           Scratch& scratch, std::vector<std::uint8_t>& seen) const {
     seen.assign(points.at.size(), 0);
     for (std::size_t k = 0; k < directions.size(); ++k) {

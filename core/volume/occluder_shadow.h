@@ -54,7 +54,7 @@ public:
         std::vector<Vec3d> projected;         ///< positions of the mesh: cell along u and v, height
     };
     /// Bit k of seen[i]: point i sees the light in directions[k] (unit, at most 8).
-    void look(const Points& points, std::span<const Vec3d> directions, const Progress& progress, Scratch& scratch,
+    void visible(const Points& points, std::span<const Vec3d> directions, const Progress& progress, Scratch& scratch,
               std::vector<std::uint8_t>& seen) const;
 
 private:

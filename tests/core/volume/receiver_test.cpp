@@ -7,7 +7,7 @@
 #include "core/base/parallel.h"
 #include "core/visibility/direction_set.h"
 #include "core/visibility/hemisphere_means.h"
-#include "tests/core/volume/stages.h"
+#include "tests/core/volume/volume_steps.h"
 #include "tests/support/random_media.h"
 #include "tests/support/receiver_points.h"
 #include "tests/support/strand_models.h"
@@ -79,11 +79,11 @@ TEST(Receiver, IsTheMeanOfTheSweepOfEveryDirection) {
     const auto first = model.add_probes(places);
     const StrandGeometry strands = model.geometry();
     const TriangleMesh receiver = receiver_points(points);
-    const Stages stages(strands, with_voxel_size(1 / 32.0));
+    const HairVolume volume = volume_of(strands, with_voxel_size(1 / 32.0));
     const auto directions = make_directions(DirectionSet::fibonacci, 50, 0);
     std::vector<HemisphereSums> sums(places.size());
     for (const Vec3d& w : directions) {
-        const auto t = sweep_one(strands, stages, w);
+        const auto t = sweep_one(volume, w);
         for (std::size_t i = 0; i < sums.size(); ++i)
             sums[i].add(double{t[first + i]}, dot(Vec3d(receiver.normals[i]), w));
     }

@@ -361,7 +361,11 @@ TEST(Transmittance, StopsWhenItIsCancelled) {
 
 TEST(Transmittance, TellsWhatItUsed) {
     Progress progress;
-    const Transmittance baked = bake_transmittance_volume({tuft().geometry()}, with_voxels(64, 36), progress);
+    const StrandGeometry strands = tuft().geometry();
+    TransmittanceScene scene{strands};
+    EXPECT_EQ(bake_transmittance_volume(scene, with_voxels(64, 36), progress).density, nullptr);
+    scene.keep_density = true;
+    const Transmittance baked = bake_transmittance_volume(scene, with_voxels(64, 36), progress);
     EXPECT_EQ(baked.directions, 36);
     EXPECT_EQ(baked.average.size(), 10'000u);
     ASSERT_TRUE(baked.density);
