@@ -103,8 +103,8 @@ struct Axis {
 
 /// What one thread fills and needs for all its walks along an axis.
 struct Worker {
-    std::vector<std::vector<SweepSums>> sums;      ///< [set][reader]
-    std::vector<std::vector<std::uint8_t>> seen;   ///< [set], SweepStop::seen
+    std::vector<std::vector<SweepSums>> sums;     ///< [set][reader]
+    std::vector<std::vector<std::uint8_t>> seen;  ///< [set], SweepStop::seen
     SweepScratch sweep;
     OccluderShadow::Scratch raster;
 

@@ -12,7 +12,7 @@ namespace hairbake {
 
 /// Per voxel the symmetric tensor T = sum over pieces of opacity * width * length * t t^T / h^2, dimensionless. The
 /// optical depth of one voxel edge in direction l (unit) is sqrt(tr T * (tr T - l.T.l)), which is exact for combed
-/// hair (docs/math.md, "@ORIENT").
+/// hair (docs/math.md, "The extinction tensor").
 struct ExtinctionBricks {
     static constexpr int voxels = 512;
     static constexpr int components = 6;

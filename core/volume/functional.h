@@ -19,8 +19,8 @@ struct FunctionalInput {
     const TransmittanceScene& scene;
     const TransmittanceSettings& settings;
     std::span<const Vec3d> directions;
-    const PointSet& vertices;              ///< of the hair, in the order of SortedStrands::vertices
-    const PointSet* receiver = nullptr;    ///< the positions of scene.receiver with its normals; null without a receiver
+    const PointSet& vertices;            ///< of the hair, in the order of SortedStrands::vertices
+    const PointSet* receiver = nullptr;  ///< the positions of scene.receiver with its normals; null without a receiver
 };
 
 /// The steps are called once each, in this order: reader, near_field_means, answer.
@@ -34,8 +34,8 @@ public:
     /// SortedStrands. All functionals share one pass over the near geometry. Default: none.
     virtual std::vector<std::vector<AngularMean>> near_field_means(const FixedPointSums& /*sums*/) const { return {}; }
 
-    /// Puts the arrays into `result`. `corrected`: [means][V], the averages of near_field_means after the correction, in
-    /// the model's order; may be moved from.
+    /// Puts the arrays into `result`. `corrected`: [means][V], the averages of near_field_means after the correction,
+    /// in the model's order; may be moved from.
     virtual void answer(const FixedPointSums& sums, std::span<std::vector<float>> corrected,
                         Transmittance& result) const = 0;
 };

@@ -16,9 +16,9 @@ namespace hairbake {
 struct GridFrame {
     static constexpr int brick_side = 8;
 
-    Vec3f origin;               ///< model space
-    double voxel_size = 1;      ///< h, model units
-    std::array<int, 3> bricks;  ///< per axis
+    Vec3f origin;                   ///< model space
+    double voxel_size = 1;          ///< h, model units
+    std::array<int, 3> bricks;      ///< per axis
     bool bounded_by_width = false;  ///< the widths decided voxel_size, not the request
 
     Vec3f to_grid(const Vec3f& p) const { return (p - origin) * static_cast<float>(1 / voxel_size); }

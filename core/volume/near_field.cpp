@@ -20,14 +20,13 @@
 #define HAIRBAKE_NEAR_FIELD_TYPES
 namespace hairbake {
 
-/// A value for each mean of a vertex.
-using MeanValues = std::array<float, kMostMeans>;
+/// A value for each of the M means of a vertex. Code for one mean is compiled apart from that for several.
+template <std::size_t M>
+using MeanValues = std::array<float, M>;
 
 /// The means of one vertex.
-struct VertexMeans {
-    std::array<AngularMean, kMostMeans> values;
-    std::size_t count = 0;
-};
+template <std::size_t M>
+using VertexMeans = std::array<AngularMean, M>;
 
 /// What the correction of every brick reads.
 struct NearFieldInput {
@@ -39,6 +38,7 @@ struct NearFieldInput {
 
 /// Pieces that reach into a vertex's window, packed for the integral. Geometry is stored once, and for each mean the
 /// part that depends on its slope.
+template <std::size_t M>
 struct Reaching {
     static constexpr std::size_t capacity = 1024;  ///< integrated and emptied when full
     static constexpr std::size_t size = capacity + 16;
@@ -52,7 +52,7 @@ struct Reaching {
     alignas(64) float distance2[size];  ///< D^2: squared distance of the axis from the vertex
     alignas(64) float half_length[size];
     alignas(64) float weight[size];  ///< opacity * width / h
-    std::vector<Slopes> slopes;      ///< [means]
+    std::array<Slopes, M> slopes;
     std::size_t count = 0;
 };
 
@@ -69,11 +69,12 @@ using I = hn::RebindToSigned<F>;
 /// A straight piece has the axis distance D; s runs from the foot point, d^2 = D^2 + s^2 and sin(angle) = D / d. So the
 /// integrand is D / d^3 - 2 D / (r^2 d) + D d / r^4, with the primitive
 /// s / (D d) - (2 / r^2) D asinh(s / D) + (D / 2 r^4)(s d + D^2 asinh(s / D)).
-MeanValues integrate(const Reaching& pieces, const VertexMeans& means) {
+template <std::size_t M>
+MeanValues<M> integrate(const Reaching<M>& pieces, const VertexMeans<M>& means) {
     const F d;
     constexpr float r2 = NearFieldWindow::radius * NearFieldWindow::radius;
     const auto zero = hn::Zero(d), half = hn::Set(d, 0.5f);
-    alignas(64) float sums[kMostMeans][16] = {};
+    alignas(64) float sums[M][16] = {};
     for (std::size_t i = 0; i < pieces.count; i += hn::Lanes(d)) {
         const auto used = hn::FirstN(d, pieces.count - i);
         const auto distance2 = hn::Load(d, pieces.distance2 + i), foot = hn::Load(d, pieces.foot + i);
@@ -97,31 +98,32 @@ MeanValues integrate(const Reaching& pieces, const VertexMeans& means) {
         const auto toward = hn::Sqrt(hn::MulAdd(along, along, distance2));
         const auto reaches = hn::And(used, hn::Gt(high, low));
         const auto weighted = hn::Mul(hn::Load(d, pieces.weight + i), integral);
-        for (std::size_t m = 0; m < means.count; ++m) {
-            const Reaching::Slopes& slopes = pieces.slopes[m];
-            const auto slope = hn::Div(hn::MulAdd(along, hn::Load(d, slopes.axis + i), hn::Load(d, slopes.foot + i)),
-                                       toward);
-            const auto inverse_average = hn::Set(d, 1 / means.values[m].average);
+        for (std::size_t m = 0; m < M; ++m) {
+            const auto& slopes = pieces.slopes[m];
+            const auto slope =
+                hn::Div(hn::MulAdd(along, hn::Load(d, slopes.axis + i), hn::Load(d, slopes.foot + i)), toward);
+            const auto inverse_average = hn::Set(d, 1 / means[m].average);
             const auto visible = hn::Max(zero, hn::MulAdd(slope, inverse_average, hn::Set(d, 1.0f)));
             const auto term = hn::IfThenElseZero(reaches, hn::Mul(weighted, visible));
             hn::Store(hn::Add(hn::Load(d, sums[m]), term), d, sums[m]);
         }
     }
-    MeanValues integrals{};
-    for (std::size_t m = 0; m < means.count; ++m)
-        integrals[m] = hn::GetLane(hn::SumOfLanes(d, hn::Load(d, sums[m])));
+    MeanValues<M> integrals{};
+    for (std::size_t m = 0; m < M; ++m) integrals[m] = hn::GetLane(hn::SumOfLanes(d, hn::Load(d, sums[m])));
     return integrals;
 }
 
-void add_to(MeanValues& sums, const MeanValues& more, std::size_t count) {
-    for (std::size_t m = 0; m < count; ++m) sums[m] += more[m];
+template <std::size_t M>
+void add_to(MeanValues<M>& sums, const MeanValues<M>& more) {
+    for (std::size_t m = 0; m < M; ++m) sums[m] += more[m];
 }
 
 /// Packs those of the pieces [begin, end) that come within the window of the vertex at x. Where `out` is full it is
 /// integrated and emptied; returns these integrals.
-MeanValues select(const Neighborhood& near, std::size_t begin, std::size_t end, const Vec3f& x,
-                  const AdjacentSegments& own, const VertexMeans& means, Reaching& out) {
-    MeanValues integrals{};
+template <std::size_t M>
+MeanValues<M> select(const Neighborhood& near, std::size_t begin, std::size_t end, const Vec3f& x,
+                     const AdjacentSegments& own, const VertexMeans<M>& means, Reaching<M>& out) {
+    MeanValues<M> integrals{};
     const F d;
     const hn::RebindToSigned<F> di;
     constexpr float r2 = NearFieldWindow::radius * NearFieldWindow::radius;
@@ -143,14 +145,14 @@ MeanValues select(const Neighborhood& near, std::size_t begin, std::size_t end, 
         auto keep = hn::And(hn::FirstN(d, end - i), hn::Lt(hn::MulAdd(beyond, beyond, distance2), hn::Set(d, r2)));
         keep = hn::And(hn::RebindMask(d, is_other), keep);
         if (hn::AllFalse(d, keep)) continue;
-        if (out.count > Reaching::capacity - hn::Lanes(d)) {
-            add_to(integrals, integrate(out, means), means.count);
+        if (out.count > Reaching<M>::capacity - hn::Lanes(d)) {
+            add_to(integrals, integrate(out, means));
             out.count = 0;
         }
         const std::size_t at = out.count;
-        for (std::size_t m = 0; m < means.count; ++m) {
-            const auto slope_x = hn::Set(d, means.values[m].slope.x), slope_y = hn::Set(d, means.values[m].slope.y),
-                       slope_z = hn::Set(d, means.values[m].slope.z);
+        for (std::size_t m = 0; m < M; ++m) {
+            const auto slope_x = hn::Set(d, means[m].slope.x), slope_y = hn::Set(d, means[m].slope.y),
+                       slope_z = hn::Set(d, means[m].slope.z);
             const auto axis = hn::MulAdd(tx, slope_x, hn::MulAdd(ty, slope_y, hn::Mul(tz, slope_z)));
             const auto centre = hn::MulAdd(cx, slope_x, hn::MulAdd(cy, slope_y, hn::Mul(cz, slope_z)));
             hn::CompressStore(hn::NegMulAdd(foot, axis, centre), keep, d, out.slopes[m].foot + at);
@@ -166,10 +168,12 @@ MeanValues select(const Neighborhood& near, std::size_t begin, std::size_t end, 
 
 /// F_grid of a vertex in local voxel `voxel`, without the factor 1 / 4 pi: the voxels around it, each seen in the
 /// direction of its centre.
-MeanValues grid_depth(const Neighborhood& near, int voxel, const NearFieldWindow& window, const VertexMeans& means) {
+template <std::size_t M>
+MeanValues<M> grid_depth(const Neighborhood& near, int voxel, const NearFieldWindow& window,
+                         const VertexMeans<M>& means) {
     const F d;
     const I di;
-    alignas(64) float sums[kMostMeans][16] = {};
+    alignas(64) float sums[M][16] = {};
     for (std::size_t o = 0; o < NearFieldWindow::padded; o += hn::Lanes(d)) {
         const auto x = hn::Load(d, window.direction_x.data() + o), y = hn::Load(d, window.direction_y.data() + o);
         const auto z = hn::Load(d, window.direction_z.data() + o);
@@ -185,16 +189,16 @@ MeanValues grid_depth(const Neighborhood& near, int voxel, const NearFieldWindow
         along = hn::MulAdd(hn::Mul(z, z), component(2), along);
         const auto depth = hn::Sqrt(hn::Mul(trace, hn::Max(hn::Zero(d), hn::Sub(trace, along))));
         const auto weighted = hn::Mul(hn::Load(d, window.weight.data() + o), depth);
-        for (std::size_t m = 0; m < means.count; ++m) {
-            const Vec3f slope = means.values[m].slope / means.values[m].average;
-            const auto toward = hn::MulAdd(x, hn::Set(d, slope.x),
-                                           hn::MulAdd(y, hn::Set(d, slope.y), hn::Mul(z, hn::Set(d, slope.z))));
+        for (std::size_t m = 0; m < M; ++m) {
+            const Vec3f slope = means[m].slope / means[m].average;
+            const auto toward =
+                hn::MulAdd(x, hn::Set(d, slope.x), hn::MulAdd(y, hn::Set(d, slope.y), hn::Mul(z, hn::Set(d, slope.z))));
             const auto visible = hn::Max(hn::Zero(d), hn::Add(hn::Set(d, 1.0f), toward));
             hn::Store(hn::MulAdd(weighted, visible, hn::Load(d, sums[m])), d, sums[m]);
         }
     }
-    MeanValues depths{};
-    for (std::size_t m = 0; m < means.count; ++m) depths[m] = hn::GetLane(hn::SumOfLanes(d, hn::Load(d, sums[m])));
+    MeanValues<M> depths{};
+    for (std::size_t m = 0; m < M; ++m) depths[m] = hn::GetLane(hn::SumOfLanes(d, hn::Load(d, sums[m])));
     return depths;
 }
 
@@ -223,51 +227,70 @@ std::size_t pieces_around(const Neighborhood& near, const Vec3f& x) {
 }
 
 /// F_exact of a vertex at local position x, without the factor 1 / 4 pi.
-MeanValues exact_depth(const Neighborhood& near, const Vec3f& x, const AdjacentSegments& own, const VertexMeans& means,
-                       Reaching& pieces) {
-    MeanValues depths{};
+template <std::size_t M>
+MeanValues<M> exact_depth(const Neighborhood& near, const Vec3f& x, const AdjacentSegments& own,
+                          const VertexMeans<M>& means, Reaching<M>& pieces) {
+    MeanValues<M> depths{};
     pieces.count = 0;
     for_each_row(near, x, [&](std::size_t begin, std::size_t end) {
-        add_to(depths, select(near, begin, end, x, own, means, pieces), means.count);
+        add_to(depths, select(near, begin, end, x, own, means, pieces));
     });
-    add_to(depths, integrate(pieces, means), means.count);
+    add_to(depths, integrate(pieces, means));
     return depths;
+}
+
+/// The exponents of the correction's factor for the vertex at `place` of volume.sorted, which lies in the brick of
+/// `near`.
+template <std::size_t M>
+MeanValues<M> exponents_of(const NearFieldInput& input, std::size_t place, const Neighborhood& near,
+                           const VertexMeans<M>& means, Reaching<M>& pieces) {
+    const StrandGeometry& strands = input.strands;
+    const std::uint32_t v = input.volume.sorted.vertices[place];
+    const AdjacentSegments own = adjacent_segments(strands, v);
+    const auto own_unit = 0.5f * NearFieldWindow::own_strand_beyond / static_cast<float>(input.volume.frame.voxel_size);
+    MeanValues<M> exponents, shares;
+    exponents.fill(own_sides(strands, v, own) * own_unit * strands.opacities[v] * strands.widths[v]);
+    float largest_share = 0;
+    for (std::size_t m = 0; m < M; ++m) {
+        shares[m] = NearFieldWindow::share(means[m].average);
+        largest_share = std::max(largest_share, shares[m]);
+    }
+    const Vec3f x = input.volume.sorted.vertex_positions[place] - near.corner;
+    if (!(largest_share > 0) || pieces_around(near, x) > NearFieldWindow::most_pieces) return exponents;
+    const int voxel = Neighborhood::voxel(static_cast<int>(x.x), static_cast<int>(x.y), static_cast<int>(x.z));
+    const MeanValues<M> smeared = grid_depth(near, voxel, input.window, means);
+    const MeanValues<M> exact = exact_depth(near, x, own, means, pieces);
+    for (std::size_t m = 0; m < M; ++m) {
+        if (!(shares[m] > 0)) continue;
+        const float gain = (smeared[m] - exact[m]) / (4 * std::numbers::pi_v<float>);
+        exponents[m] += shares[m] * std::min(gain, NearFieldWindow::most_gain);
+    }
+    return exponents;
+}
+
+/// Corrects up to M means. Where there are fewer the last ones repeat the first and are thrown away.
+template <std::size_t M>
+void correct_means(const NearFieldInput& input, std::size_t first, std::size_t last, const Neighborhood& near,
+                   std::span<std::vector<float>> corrected) {
+    const std::size_t count = input.means.size();
+    Reaching<M> pieces;
+    VertexMeans<M> means;
+    for (std::size_t place = first; place < last; ++place) {
+        for (std::size_t m = 0; m < M; ++m) means[m] = input.means[m < count ? m : 0][place];
+        const MeanValues<M> exponents = exponents_of(input, place, near, means, pieces);
+        const std::uint32_t v = input.volume.sorted.vertices[place];
+        for (std::size_t m = 0; m < count; ++m)
+            corrected[m][v] = std::min(1.0f, means[m].average * std::exp(exponents[m]));
+    }
 }
 
 /// Corrects the vertices [first, last) of volume.sorted, which lie in the brick of `near`. corrected: [means][V].
 void correct_vertices(const NearFieldInput& input, std::size_t first, std::size_t last, const Neighborhood& near,
                       std::span<std::vector<float>> corrected) {
-    const StrandGeometry& strands = input.strands;
-    const SortedStrands& sorted = input.volume.sorted;
-    Reaching pieces;
-    pieces.slopes.resize(input.means.size());
-    VertexMeans means{.values = {}, .count = input.means.size()};
-    const auto own_unit = 0.5f * NearFieldWindow::own_strand_beyond / static_cast<float>(input.volume.frame.voxel_size);
-    for (std::size_t place = first; place < last; ++place) {
-        const std::uint32_t v = sorted.vertices[place];
-        const AdjacentSegments own = adjacent_segments(strands, v);
-        MeanValues exponents{}, shares{};
-        float largest_share = 0;
-        for (std::size_t m = 0; m < means.count; ++m) {
-            means.values[m] = input.means[m][place];
-            exponents[m] = own_sides(strands, v, own) * own_unit * strands.opacities[v] * strands.widths[v];
-            shares[m] = NearFieldWindow::share(means.values[m].average);
-            largest_share = std::max(largest_share, shares[m]);
-        }
-        const Vec3f x = sorted.vertex_positions[place] - near.corner;
-        if (largest_share > 0 && pieces_around(near, x) <= NearFieldWindow::most_pieces) {
-            const int voxel = Neighborhood::voxel(static_cast<int>(x.x), static_cast<int>(x.y), static_cast<int>(x.z));
-            const MeanValues smeared = grid_depth(near, voxel, input.window, means);
-            const MeanValues exact = exact_depth(near, x, own, means, pieces);
-            for (std::size_t m = 0; m < means.count; ++m) {
-                if (!(shares[m] > 0)) continue;
-                const float gain = (smeared[m] - exact[m]) / (4 * std::numbers::pi_v<float>);
-                exponents[m] += shares[m] * std::min(gain, NearFieldWindow::most_gain);
-            }
-        }
-        for (std::size_t m = 0; m < means.count; ++m)
-            corrected[m][v] = std::min(1.0f, means.values[m].average * std::exp(exponents[m]));
-    }
+    if (input.means.size() == 1)
+        correct_means<1>(input, first, last, near, corrected);
+    else
+        correct_means<kMostMeans>(input, first, last, near, corrected);
 }
 
 }  // namespace hairbake::HWY_NAMESPACE

@@ -17,7 +17,7 @@ struct AngularMean {
 };
 
 /// A vertex has at most this many means (of different lights or extinctions).
-constexpr std::size_t kMostMeans = 8;
+constexpr std::size_t kMostMeans = 4;
 
 /// Corrected averages of every vertex: [means][V], in the model's order. One pass over the strands near the vertices
 /// serves all means; each is corrected on its own.
@@ -31,7 +31,7 @@ constexpr std::size_t kMostMeans = 8;
 ///   distance is never less than half of the width.
 /// - F_grid of the voxels.
 /// `own` removes the part of the vertex's own strand that the grid holds outside the window: half of it at a strand's
-/// end, nothing at a lone point. See docs/math.md, "@NEAR".
+/// end, nothing at a lone point. See docs/math.md, "The near field".
 ///
 /// The same bits for any thread count. Throws Error(cancelled).
 std::vector<std::vector<float>> correct_near_field(const StrandGeometry& strands, const HairVolume& volume,

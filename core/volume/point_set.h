@@ -15,8 +15,8 @@ namespace hairbake {
 struct PointSet {
     std::span<const Vec3f> positions;            ///< [P], grid space; they may lie outside the grid
     std::span<const std::uint32_t> model_index;  ///< [P], index in the model of each point; empty: the same index
-    std::span<const Vec3f> vectors;              ///< [P], unit normal or tangent in model axes; empty where none is used
-    const PointShadow* shadow = nullptr;         ///< of an occluder on the model's points; null for none
+    std::span<const Vec3f> vectors;       ///< [P], unit normal or tangent in model axes; empty where none is used
+    const PointShadow* shadow = nullptr;  ///< of an occluder on the model's points; null for none
 
     std::size_t size() const { return positions.size(); }
 };

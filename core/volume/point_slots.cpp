@@ -27,7 +27,8 @@ void for_each_chunk(std::size_t count, const Body& body) {
 /// Row of position s along the axis. A position that is not a number is in row 0: nothing is in its way.
 std::size_t row_of(const SliceLayout& layout, float s) {
     if (!(s >= 0)) return 0;
-    return static_cast<std::size_t>(s < static_cast<float>(layout.slices) ? static_cast<int>(s) + 1 : layout.slices + 1);
+    return static_cast<std::size_t>(s < static_cast<float>(layout.slices) ? static_cast<int>(s) + 1
+                                                                          : layout.slices + 1);
 }
 
 std::int32_t texel_of(const HairVolume& volume, const SliceLayout& layout, const Vec3f& g) {

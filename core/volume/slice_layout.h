@@ -26,7 +26,7 @@ struct SliceLayout {
     std::vector<std::uint32_t> tile_begin;  ///< [slices + 1]
     std::vector<Tile> tiles;
     std::vector<std::array<std::uint32_t, 8>> brick_tiles;  ///< [brick number][slice of the brick]: index into `tiles`
-    std::vector<std::uint16_t> tensors;                     ///< bits of half floats [(tile * 6 + component) * 64 + texel]
+    std::vector<std::uint16_t> tensors;  ///< bits of half floats [(tile * 6 + component) * 64 + texel]
 };
 
 /// `axis`: 0, 1 or 2. Throws Error(cancelled).

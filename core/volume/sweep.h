@@ -30,8 +30,8 @@ struct SweepScratch {
     alignas(64) std::array<std::array<float, SweepBlock::most_slots>, kSweepLanes> t;  ///< SweepBlock::t
 };
 
-/// One walk through the grid for the directions `walk`. For every point it computes T = exp(-Omega) and lets the readers
-/// add to their sums.
+/// One walk through the grid for the directions `walk`. For every point it computes T = exp(-Omega) and lets the
+/// readers add to their sums.
 ///
 /// layout:     the grid along the major axis of the directions
 /// directions: the direction set, unit vectors away from the hair

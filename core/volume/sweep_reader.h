@@ -1,4 +1,5 @@
-// What the sweep knows of a functional of the transmittance: how many sums it keeps at a point, and how it adds to them.
+// What the sweep knows of a functional of the transmittance: how many sums it keeps at a point, and how it adds to
+// them.
 #pragma once
 
 #include <array>
