@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/progress.h"
@@ -24,6 +25,12 @@ struct TransmittanceScene {
     bool keep_density = false;               ///< make Transmittance::density, for density.vdb
 };
 
+/// An array of a functional.
+struct NamedArray {
+    std::string_view name;  ///< of a row of the table of arrays (core/result/vertex_array.cpp)
+    std::vector<float> values;
+};
+
 /// A(x) at every vertex and how it came about. The caller measures time and memory.
 struct Transmittance {
     std::vector<float> average;  ///< [V], A in [0, 1], file order
@@ -34,6 +41,7 @@ struct Transmittance {
     /// [R * 2] for R positions of the receiver: mean of T over the hemisphere about the normal, plain and
     /// cosine-weighted; with a receiver.
     std::vector<float> receiver;
+    std::vector<NamedArray> others;  ///< of further functionals
     int directions = 0;
     double voxel_size = 0;                       ///< effective h in model units; 0 for other methods than `volume`
     std::uint64_t occupied_voxels = 0;           ///< voxels with extinction; 0 for other methods than `volume`

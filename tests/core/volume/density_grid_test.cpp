@@ -68,8 +68,8 @@ TEST(DensityGrid, TraceIsTheSumOfTheHalvesThatTheSweepLoads) {
     for (std::size_t b = 0; b < volume.sorted.brick_count(); ++b)
         for (std::size_t v = 0; v < 512; ++v)
             ASSERT_EQ(volume.bricks.trace(b, v), static_cast<float>(value(b, 0, v)) +
-                                                            static_cast<float>(value(b, 1, v)) +
-                                                            static_cast<float>(value(b, 2, v)));
+                                                     static_cast<float>(value(b, 1, v)) +
+                                                     static_cast<float>(value(b, 2, v)));
 }
 
 TEST(DensityGrid, PlacesVoxelCentresInModelSpace) {
@@ -150,7 +150,8 @@ TEST(DensityGrid, HoldsIsotropicStrandsLessTheMixingFactor) {
 
 TEST(DensityGrid, GivesTheSameBytesEachTimeAndATagOfItsContents) {
     // OpenVDB itself puts a random UUID into each file: 36 characters from byte 21.
-    const HairVolume volume = volume_of(fibres_off_centre(), with_voxels(40)), coarser = volume_of(fibres_off_centre(), with_voxels(32));
+    const HairVolume volume = volume_of(fibres_off_centre(), with_voxels(40)),
+                     coarser = volume_of(fibres_off_centre(), with_voxels(32));
     const DensityGrid grid(volume);
     const std::string bytes = grid.encode();
     EXPECT_TRUE(bytes == grid.encode());

@@ -87,8 +87,9 @@ TEST(NearField, CorrectsEachOfSeveralMeansAsItWouldAlone) {
     const HairVolume volume = volume_of(strands, with_voxels(32));
     std::vector<std::vector<AngularMean>> means(4);
     for (const int directions : {7, 20, 50})
-        means[directions == 7 ? 0 : directions == 20 ? 1 : 3] =
-            sweep_means(volume, make_directions(DirectionSet::fibonacci, directions, 0));
+        means[directions == 7    ? 0
+              : directions == 20 ? 1
+                                 : 3] = sweep_means(volume, make_directions(DirectionSet::fibonacci, directions, 0));
     means[2].assign(strands.vertex_count(), {0.01f, {}});
     Progress progress;
     const auto together = correct_near_field(strands, volume, means, progress);

@@ -106,8 +106,7 @@ TEST(Sweep, AlongTheAxesIsExact) {
         const double way = l.x + l.y > 0 ? 19.5 : 20.5;
         EXPECT_NEAR(sweep_one(volume, l)[block.first_probe], std::exp(-across * way), 0.001);
     }
-    for (const double sign : {1.0, -1.0})
-        EXPECT_NEAR(sweep_one(volume, Vec3d(0, 0, sign))[block.first_probe], 1, 1e-6);
+    for (const double sign : {1.0, -1.0}) EXPECT_NEAR(sweep_one(volume, Vec3d(0, 0, sign))[block.first_probe], 1, 1e-6);
 }
 
 TEST(Sweep, OfTwoDirectionsTogetherIsTheSumOfBoth) {
@@ -162,7 +161,8 @@ TEST(Sweep, OfManyPointSetsAndReadersGivesEachWhatItGivesAlone) {
     }
     // A group of up to four directions is rounded once: 23 directions are at least 6 groups on six sides, at most 12.
     for (std::size_t p = 0; p < vertices.size(); ++p)
-        ASSERT_NEAR(together[0].of(p)[1] / 65536.0, together[2].of(p)[0] / double(sweep_scale(23)) / 2, 12 * 0.5 / 65536 + 1e-5);
+        ASSERT_NEAR(together[0].of(p)[1] / 65536.0, together[2].of(p)[0] / double(sweep_scale(23)) / 2,
+                    12 * 0.5 / 65536 + 1e-5);
 }
 
 }  // namespace
