@@ -25,6 +25,7 @@ struct NearFieldInput {
     const HairVolume& volume;
     const NearFieldWindow& window;
     std::span<const std::vector<AngularMean>> means;
+    float own_unit;  ///< exponent for one side of the own strand, over opacity * width
 };
 
 }  // namespace hairbake
@@ -41,6 +42,8 @@ MeanValues<M> grid_depth(const Neighborhood& near, int voxel, const NearFieldWin
                          const VertexMeans<M>& means) {
     const F d;
     const I di;
+    std::array<Vec3f, M> slopes;
+    for (std::size_t m = 0; m < M; ++m) slopes[m] = means[m].slope / means[m].average;
     alignas(64) float sums[M][16] = {};
     for (std::size_t o = 0; o < NearFieldWindow::padded; o += hn::Lanes(d)) {
         const auto x = hn::Load(d, window.direction_x.data() + o), y = hn::Load(d, window.direction_y.data() + o);
@@ -58,7 +61,7 @@ MeanValues<M> grid_depth(const Neighborhood& near, int voxel, const NearFieldWin
         const auto depth = hn::Sqrt(hn::Mul(trace, hn::Max(hn::Zero(d), hn::Sub(trace, along))));
         const auto weighted = hn::Mul(hn::Load(d, window.weight.data() + o), depth);
         for (std::size_t m = 0; m < M; ++m) {
-            const Vec3f slope = means[m].slope / means[m].average;
+            const Vec3f& slope = slopes[m];
             const auto toward =
                 hn::MulAdd(x, hn::Set(d, slope.x), hn::MulAdd(y, hn::Set(d, slope.y), hn::Mul(z, hn::Set(d, slope.z))));
             const auto visible = hn::Max(hn::Zero(d), hn::Add(hn::Set(d, 1.0f), toward));
@@ -110,14 +113,13 @@ MeanValues<M> exact_depth(const Neighborhood& near, const Vec3f& x, const Adjace
 /// The exponents of the correction's factor for the vertex at `place` of volume.sorted, which lies in the brick of
 /// `near`.
 template <std::size_t M>
-MeanValues<M> exponents_of(const NearFieldInput& input, std::size_t place, const Neighborhood& near,
-                           const VertexMeans<M>& means, Reaching<M>& pieces) {
+HWY_INLINE MeanValues<M> exponents_of(const NearFieldInput& input, std::size_t place, const Neighborhood& near,
+                                      const VertexMeans<M>& means, Reaching<M>& pieces) {
     const StrandGeometry& strands = input.strands;
     const std::uint32_t v = input.volume.sorted.vertices[place];
     const AdjacentSegments own = adjacent_segments(strands, v);
-    const auto own_unit = 0.5f * NearFieldWindow::own_strand_beyond / static_cast<float>(input.volume.frame.voxel_size);
     MeanValues<M> exponents, shares;
-    exponents.fill(own_sides(strands, v, own) * own_unit * strands.opacities[v] * strands.widths[v]);
+    exponents.fill(own_sides(strands, v, own) * input.own_unit * strands.opacities[v] * strands.widths[v]);
     float largest_share = 0;
     for (std::size_t m = 0; m < M; ++m) {
         shares[m] = NearFieldWindow::share(means[m].average);
@@ -178,7 +180,8 @@ std::vector<std::vector<float>> correct_near_field(const StrandGeometry& strands
     std::vector<std::vector<float>> corrected(means.size(), std::vector<float>(strands.vertex_count()));
     if (means.empty()) return corrected;
     const NearFieldWindow window;
-    const NearFieldInput input{strands, volume, window, means};
+    const NearFieldInput input{strands, volume, window, means,
+                               0.5f * NearFieldWindow::own_strand_beyond / static_cast<float>(volume.frame.voxel_size)};
     const SortedStrands& sorted = volume.sorted;
     parallel_for(sorted.brick_count(), 32, [&](std::size_t begin, std::size_t end) {
         progress.check();

@@ -67,6 +67,8 @@ MeanValues<M> integrate(const Reaching<M>& pieces, const VertexMeans<M>& means) 
     const F d;
     constexpr float r2 = NearFieldWindow::radius * NearFieldWindow::radius;
     const auto zero = hn::Zero(d), half = hn::Set(d, 0.5f);
+    MeanValues<M> inverse_averages;
+    for (std::size_t m = 0; m < M; ++m) inverse_averages[m] = 1 / means[m].average;
     alignas(64) float sums[M][16] = {};
     for (std::size_t i = 0; i < pieces.count; i += hn::Lanes(d)) {
         const auto used = hn::FirstN(d, pieces.count - i);
@@ -95,7 +97,7 @@ MeanValues<M> integrate(const Reaching<M>& pieces, const VertexMeans<M>& means) 
             const auto& slopes = pieces.slopes[m];
             const auto slope =
                 hn::Div(hn::MulAdd(along, hn::Load(d, slopes.axis + i), hn::Load(d, slopes.foot + i)), toward);
-            const auto inverse_average = hn::Set(d, 1 / means[m].average);
+            const auto inverse_average = hn::Set(d, inverse_averages[m]);
             const auto visible = hn::Max(zero, hn::MulAdd(slope, inverse_average, hn::Set(d, 1.0f)));
             const auto term = hn::IfThenElseZero(reaches, hn::Mul(weighted, visible));
             hn::Store(hn::Add(hn::Load(d, sums[m]), term), d, sums[m]);
@@ -114,8 +116,8 @@ void add_to(MeanValues<M>& sums, const MeanValues<M>& more) {
 /// Packs those of the pieces [begin, end) that come within the window of the vertex at x. Where `out` is full it is
 /// integrated and emptied; returns these integrals.
 template <std::size_t M>
-MeanValues<M> select(const Neighborhood& near, std::size_t begin, std::size_t end, const Vec3f& x,
-                     const AdjacentSegments& own, const VertexMeans<M>& means, Reaching<M>& out) {
+HWY_NOINLINE MeanValues<M> select(const Neighborhood& near, std::size_t begin, std::size_t end, const Vec3f& x,
+                                  const AdjacentSegments& own, const VertexMeans<M>& means, Reaching<M>& out) {
     MeanValues<M> integrals{};
     const F d;
     const hn::RebindToSigned<F> di;

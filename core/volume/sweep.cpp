@@ -1,5 +1,6 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/volume/sweep.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 //
@@ -136,7 +137,8 @@ HWY_INLINE V mask_blocked(V t, std::span<const std::uint8_t> seen, std::size_t i
     return hn::IfThenElseZero(hn::RebindMask(d, hn::TestBit(bits, hn::Set(di, 1 << k))), t);
 }
 
-/// Fills scratch.t with T of the slots [first, first + count), which lie in slice s.
+/// Fills scratch.t with T of the slots [first, first + count), which lie in slice s, and fetches their sums into the
+/// cache.
 template <bool all_inside>
 void fill_block(const Walk& walk, const SweepStop& stop, int s, std::size_t first, std::size_t count,
                 SweepScratch& scratch) {
@@ -146,6 +148,8 @@ void fill_block(const Walk& walk, const SweepStop& stop, int s, std::size_t firs
     for (std::size_t i = first; i < first + count; i += hn::Lanes(d)) {
         SlotGroup at{hn::LoadU(d, &slots.u[i]), hn::LoadU(d, &slots.v[i]), hn::LoadU(d, &slots.s[i]), hn::Zero(d),
                      hn::LoadU(di, &slots.texel[i])};
+        for (const SweepSums& sums : stop.sums)
+            for (std::size_t c = 0; c < sums.components; ++c) hwy::Prefetch(&sums.values[c * sums.slots + i]);
         at.inside = walk.ascending ? hn::Sub(hn::Set(d, static_cast<float>(s + 1)), at.s)
                                    : hn::Sub(at.s, hn::Set(d, static_cast<float>(s)));
         for (std::size_t k = 0; k < walk.rays.size(); ++k) {
