@@ -35,12 +35,12 @@ std::string hair_of(const RenderRequest& request, const StoredResult& stored) {
     if (request.bake.hair) {
         const std::string digest = digest_of_file(*request.bake.hair);
         if (digest == stored.hair_file_digest) return *request.bake.hair;
-        return checked(*request.bake.hair, stored.hair_digest, "hair");
+        return checked(*request.bake.hair, stored.digests.at("hair"), "hair");
     }
     if (!stored.hair_file_digest.empty())
         return checked((fs::path(*request.result) / "transmittance.hair").string(), stored.hair_file_digest, "hair");
     if (stored.request.hair && fs::exists(*stored.request.hair))
-        return checked(*stored.request.hair, stored.hair_digest, "hair");
+        return checked(*stored.request.hair, stored.digests.at("hair"), "hair");
     throw Error(ErrorKind::usage, *request.result + " does not hold its hair model: give the file (--hair)", "hair");
 }
 
@@ -53,7 +53,8 @@ std::string environment_of(const RenderRequest& request, const StoredResult& sto
                         "the file (--env)",
                     "environment");
     // A result of hair alone may be lit by anything.
-    return stored.environment_digest.empty() ? *file : checked(*file, stored.environment_digest, "environment");
+    return !stored.digests.contains("environment") ? *file
+                                                   : checked(*file, stored.digests.at("environment"), "environment");
 }
 
 std::string occluder_of(const RenderRequest& request, const StoredResult& stored) {
@@ -63,33 +64,37 @@ std::string occluder_of(const RenderRequest& request, const StoredResult& stored
                     "the mode reference needs the occluder that " + *request.result +
                         " was baked with: give the file (--occluder)",
                     "occluder");
-    return checked(*file, stored.occluder_digest, "occluder");
+    return checked(*file, stored.digests.at("occluder"), "occluder");
+}
+
+void take_arrays(std::vector<VertexArray>& arrays, RenderInput& input) {
+    input.average = take_values(arrays, average_transmittance_kind());
+    input.sh = take_values(arrays, transmittance_sh_kind());
+    input.bent_cone = take_values(arrays, bent_cone_kind());
 }
 
 RenderInput from_folder(const RenderRequest& request) {
     StoredResult stored = read_result(*request.result);
-    if (stored.hair_digest.empty())
+    if (!stored.digests.contains("hair"))
         throw Error(ErrorKind::usage, *request.result + " is a bake without hair: there is nothing to show", "result");
     RenderInput input;
     input.bake = stored.request;
     input.bake.hair = hair_of(request, stored);
     if (needs_environment(request)) input.bake.environment = environment_of(request, stored);
-    if (!stored.occluder_digest.empty() && request.mode == ShadingMode::reference)
+    if (stored.digests.contains("occluder") && request.mode == ShadingMode::reference)
         input.occluder = read_mesh(occluder_of(request, stored));
     input.hair = read_hair(*input.bake.hair);
+    take_arrays(stored.arrays, input);
     const bool needs_average = request.mode == ShadingMode::directional || request.transmittance;
-    if (needs_average && stored.average.size() != input.hair.vertex_count())
+    if (needs_average && input.average.size() != input.hair.vertex_count())
         throw Error(ErrorKind::bad_input, *request.result + " has the transmittance of " +
-                                              std::to_string(stored.average.size()) + " vertices, the hair has " +
+                                              std::to_string(input.average.size()) + " vertices, the hair has " +
                                               std::to_string(input.hair.vertex_count()) +
                                               "; bake with npy among the outputs");
     if (request.mode == ShadingMode::baked && shows_light(request) && !stored.maps)
         throw Error(ErrorKind::usage,
                     *request.result + " holds no maps; bake with an environment and npy among the outputs", "result");
-    input.average = std::move(stored.average);
-    input.sh = std::move(stored.sh);
-    input.bent_cone = std::move(stored.bent_cone);
-    input.maps = std::move(stored.maps);
+    if (stored.maps) input.maps = to_irradiance_maps(std::move(*stored.maps));
     return input;
 }
 
@@ -102,13 +107,15 @@ RenderInput from_bake(const RenderRequest& request, BakeProgress& progress) {
     BakeRequest wanted = request.bake;
     wanted.transmittance.reference_vertices = 0;
     if (request.mode != ShadingMode::baked || !shows_light(request)) wanted.environment.reset();
-    BakeResult result = bake(wanted, thread_count(), progress);
-    input.hair = result.hair ? std::move(*result.hair) : read_hair(*request.bake.hair);
-    input.occluder = std::move(result.occluder);
-    input.average = std::move(result.transmittance->average);
-    input.sh = std::move(result.transmittance->sh);
-    input.bent_cone = std::move(result.transmittance->bent_cone);
-    input.maps = std::move(result.irradiance);
+    BakeResult result =
+        bake(wanted, stages_of(wanted), {thread_count(), wanted.environment && needs_environment(request)}, progress);
+    input.hair = std::move(*result.hair);
+    if (request.bake.occluder) input.occluder = read_mesh(*request.bake.occluder);
+    for (StagePart& part : result.parts) {
+        if (!part.arrays.empty()) take_arrays(part.arrays, input);
+        if (part.maps) input.maps = to_irradiance_maps(std::move(*part.maps));
+    }
+    if (wanted.environment && needs_environment(request)) input.environment = std::move(result.inputs.environment);
     input.warnings = std::move(result.warnings);
     return input;
 }
@@ -122,7 +129,7 @@ bool shows_light(const RenderRequest& request) {
 
 RenderInput read_render_input(const RenderRequest& request, BakeProgress& progress) {
     RenderInput input = request.result ? from_folder(request) : from_bake(request, progress);
-    if (needs_environment(request)) {
+    if (needs_environment(request) && !input.environment) {
         progress.enter("read_environment");
         input.environment = read_environment(*input.bake.environment, input.bake.environment_settings, progress);
     }

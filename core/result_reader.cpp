@@ -1,5 +1,6 @@
 #include "core/result_reader.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -70,23 +71,22 @@ void expect_shape(const fs::path& file, const std::vector<std::size_t>& found,
     if (found != allowed) refuse(file, "has the shape " + shape_text(found) + "; allowed is " + shape_text(allowed));
 }
 
-void read_transmittance(const ResultFiles& files, StoredResult& result) {
-    NpyArray average = files.array("transmittance.npy");
-    if (average.shape.empty()) return;
-    const std::size_t vertices = average.values.size();
-    expect_shape(files.path("transmittance.npy"), average.shape, {vertices});
-    for (const float a : average.values)
-        if (!(a >= 0 && a <= 1))
-            refuse(files.path("transmittance.npy"), "holds " + std::to_string(a) + "; allowed is 0 to 1");
-    result.average = std::move(average.values);
-
-    const auto bands = static_cast<std::size_t>(result.request.transmittance.sh_bands);
-    NpyArray sh = files.array("transmittance_sh.npy");
-    if (!sh.shape.empty()) expect_shape(files.path("transmittance_sh.npy"), sh.shape, {vertices, bands * bands});
-    result.sh = std::move(sh.values);
-    NpyArray cone = files.array("bent_cone.npy");
-    if (!cone.shape.empty()) expect_shape(files.path("bent_cone.npy"), cone.shape, {vertices, 4});
-    result.bent_cone = std::move(cone.values);
+void read_arrays(const ResultFiles& files, StoredResult& result) {
+    std::map<ArrayOwner, std::size_t> rows;  // all arrays of an owner have as many
+    for (const ArrayKind& kind : array_kinds()) {
+        const std::string name = std::string(kind.name) + ".npy";
+        NpyArray read = files.array(name);
+        if (read.shape.empty()) continue;
+        VertexArray array{&kind, std::max<std::size_t>(1, kind.components(result.request)), std::move(read.values)};
+        expect_shape(files.path(name), read.shape, array.shape());
+        if (rows.try_emplace(kind.owner, array.rows()).first->second != array.rows())
+            refuse(files.path(name), "has " + std::to_string(array.rows()) + " rows; allowed is " +
+                                         std::to_string(rows[kind.owner]) + ", as the other arrays have");
+        for (const float value : array.values)
+            if (kind.is_share && !(value >= 0 && value <= 1))
+                refuse(files.path(name), "holds " + std::to_string(value) + "; allowed is 0 to 1");
+        result.arrays.push_back(std::move(array));
+    }
 }
 
 CubeTexels texels_of(const NpyArray& array, std::size_t first, std::size_t count) {
@@ -106,17 +106,20 @@ void read_maps(const ResultFiles& files, StoredResult& result) {
     const auto maps = static_cast<std::size_t>(result.request.irradiance.specular_maps);
     expect_shape(files.path("diffuse.npy"), diffuse.shape, {6, n, n, 3});
     expect_shape(files.path("specular.npy"), specular.shape, {maps, 6, n, n, 3});
-    IrradianceMaps& target = result.maps.emplace();
+    IrradianceMaps target;
     target.face_size = static_cast<int>(n);
     target.exponent = result.request.irradiance.exponent;
     const std::size_t texels = 6 * n * n;
     target.diffuse = texels_of(diffuse, 0, texels);
     for (std::size_t m = 0; m < maps; ++m) target.specular.push_back(texels_of(specular, m * texels, texels));
+    result.maps = to_map_set(target, result.request.irradiance.model);
 }
 
-std::string input_digest(const Json& manifest, const char* input) {
-    const Json& inputs = manifest.at("inputs");
-    return inputs.contains(input) ? inputs.at(input).at("sha256").get<std::string>() : std::string();
+InputDigests input_digests(const Json& manifest) {
+    InputDigests digests;
+    for (const auto& [name, input] : manifest.at("inputs").items())
+        digests[name] = input.at("sha256").get<std::string>();
+    return digests;
 }
 
 }  // namespace
@@ -128,12 +131,10 @@ StoredResult read_result(const fs::path& folder) {
     try {
         merge_json(result.request, manifest.at("request").dump(), file.string());
         validate(result.request);
-        result.hair_digest = input_digest(manifest, "hair");
-        result.environment_digest = input_digest(manifest, "environment");
-        result.occluder_digest = input_digest(manifest, "occluder");
+        result.digests = input_digests(manifest);
         const ResultFiles files(folder, manifest);
         result.hair_file_digest = files.digest("transmittance.hair");
-        read_transmittance(files, result);
+        read_arrays(files, result);
         read_maps(files, result);
     } catch (const Json::exception& error) {
         refuse(file, std::string("is not a manifest of hairbake: ") + error.what());

@@ -6,24 +6,24 @@
 #include <string>
 #include <vector>
 
-#include "core/irradiance/irradiance_maps.h"
-#include "core/request/request.h"
+#include "core/request/stages.h"
+#include "core/result/map_set.h"
+#include "core/result/vertex_array.h"
 
 namespace hairbake {
 
 /// What the .npy files of a result hold, and what they were baked from.
 struct StoredResult {
-    BakeRequest request;                                           ///< as it was run
-    std::string hair_digest, environment_digest, occluder_digest;  ///< SHA-256 of the inputs, or empty
-    std::string hair_file_digest;                                  ///< of transmittance.hair, where the folder has it
-    std::vector<float> average;                                    ///< [V], A; empty without transmittance
-    std::vector<float> sh;               ///< [V * bands^2], with request.transmittance.sh_bands
-    std::vector<float> bent_cone;        ///< [V * 4], with request.transmittance.bent_cone
-    std::optional<IrradianceMaps> maps;  ///< texels, face size and exponent; no statistics
+    BakeRequest request;              ///< as it was run
+    InputDigests digests;             ///< of the inputs
+    std::string hair_file_digest;     ///< of transmittance.hair, where the folder has it; else empty
+    std::vector<VertexArray> arrays;  ///< of array_kinds() that the folder has
+    std::optional<MapSet> maps;       ///< without statistics
 };
 
 /// Trusts nothing: every file is the one whose SHA-256 the manifest gives, shapes fit each other, values are finite and
-/// A is 0 to 1. Throws Error(bad_input) naming the file, what was found and what is allowed.
+/// shares are 0 to 1.
+/// Throws Error(bad_input) naming the file, what was found and what is allowed.
 StoredResult read_result(const std::filesystem::path& folder);
 
 }  // namespace hairbake

@@ -12,53 +12,39 @@
 namespace hairbake {
 namespace {
 
-struct BakeOptions {
+struct BakeFlags {
     RequestFlags request;
     std::string folder, progress = "auto";
     int threads = 0;
 };
 
-/// Rough shares of time; the estimate of the time left corrects itself as the bake goes on.
-std::vector<PlannedPhase> plan(const BakeRequest& request) {
-    std::vector<PlannedPhase> phases;
-    if (request.hair) {
-        const bool trace = request.transmittance.method == TransmittanceMethod::trace;
-        phases.push_back({"read_hair", 1});
-        phases.push_back({"transmittance", trace ? 100.0 : 10.0});
-        if (request.transmittance.reference_vertices > 0) phases.push_back({"reference", 10});
-    }
-    if (request.environment) {
-        phases.push_back({"read_environment", 2});
-        phases.push_back({"irradiance", 3});
-    }
-    phases.push_back({"write", 4});
-    return phases;
-}
-
 std::string summary(const BakeResult& result, const std::string& folder) {
     char text[256];
-    std::string line = folder + ":";
-    if (result.transmittance) {
-        std::snprintf(text, sizeof text, " transmittance of %zu vertices in %.2f s",
-                      result.transmittance->average.size(), result.measured.timings_s.at("transmittance"));
-        line += text;
-        if (result.error_bar && result.error_bar->vertices > 0) {
-            std::snprintf(text, sizeof text, " (RMSE %.4f, bias %+.4f)", result.error_bar->rmse,
-                          result.error_bar->bias);
+    std::string line;
+    const auto add = [&](const char* more) { line += std::string(line.empty() ? " " : ", ") + more; };
+    for (const StagePart& part : result.parts) {
+        const double seconds = result.measured.timings_s.at(std::string(part.stage->name));
+        if (const VertexArray* average = find_array(part.arrays, average_transmittance_kind())) {
+            std::snprintf(text, sizeof text, "transmittance of %zu vertices in %.2f s", average->rows(), seconds);
+            add(text);
+        }
+        const auto* facts = std::get_if<TransmittanceFacts>(&part.facts);
+        if (facts && facts->error_bar && facts->error_bar->vertices > 0) {
+            std::snprintf(text, sizeof text, " (RMSE %.4f, bias %+.4f)", facts->error_bar->rmse,
+                          facts->error_bar->bias);
             line += text;
         }
-    }
-    if (result.irradiance) {
-        std::snprintf(text, sizeof text, "%s %zu maps of %dx%dx6 in %.2f s", result.transmittance ? "," : "",
-                      1 + result.irradiance->specular.size(), result.irradiance->face_size,
-                      result.irradiance->face_size, result.measured.timings_s.at("irradiance"));
-        line += text;
+        if (part.maps) {
+            const int n = part.maps->face_size;
+            std::snprintf(text, sizeof text, "%zu maps of %dx%dx6 in %.2f s", part.maps->cube_count(), n, n, seconds);
+            add(text);
+        }
     }
     std::snprintf(text, sizeof text, "; peak memory %.0f MB", double(result.measured.peak_memory_bytes) / 1e6);
-    return line + text;
+    return folder + ":" + line + text;
 }
 
-void tell_done(const BakeResult& result, const BakeOptions& options) {
+void tell_done(const BakeResult& result, const BakeFlags& options) {
     for (const std::string& warning : result.warnings) say_warning(warning);
     if (options.progress == "json")
         std::printf("{\"event\":\"done\",\"folder\":%s,\"id\":%s}\n", json_string(options.folder).c_str(),
@@ -67,12 +53,12 @@ void tell_done(const BakeResult& result, const BakeOptions& options) {
         std::printf("%s\n", summary(result, options.folder).c_str());
 }
 
-void run_bake(const BakeOptions& options) {
+void run_bake(const BakeFlags& options) {
     const BakeRequest request = make_request(options.request);
     check_result_folder(options.folder);
     BakeResult result;
     {
-        const auto progress = make_progress_display(options.progress, plan(request));
+        const auto progress = make_progress_display(options.progress, planned_phases(stages_of(request), request));
         const SignalWatch watch(*progress, [&] { discard_staging(options.folder); });
         result = bake(request, options.threads, *progress);
         write_result(result, options.folder, *progress);
@@ -80,7 +66,7 @@ void run_bake(const BakeOptions& options) {
     tell_done(result, options);
 }
 
-void run(const BakeOptions& options) {
+void run(const BakeFlags& options) {
     with_json_failures(options.progress, [&] { run_bake(options); });
 }
 
@@ -88,7 +74,7 @@ void run(const BakeOptions& options) {
 
 void add_bake_command(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("bake", "Bake transmittance and irradiance maps into a result folder");
-    const auto options = std::make_shared<BakeOptions>();
+    const auto options = std::make_shared<BakeFlags>();
     command->add_option("--hair", options->request.hair, "hair model; alone: transmittance only");
     add_request_flags(*command, options->request,
                       "HDR environment: a picture, or a cube's six as a folder or sky_{face}.hdr; alone: irradiance "

@@ -19,6 +19,9 @@ spdlog::logger& logger() {
 
 void say_note(const std::string& text) { logger().info("{}", text); }
 void say_warning(const std::string& text) { logger().warn("{}", text); }
+void say_warnings(const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) say_warning(text);
+}
 void say_error(const std::string& text) { logger().error("{}", text); }
 
 }  // namespace hairbake

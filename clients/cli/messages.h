@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace hairbake {
 
@@ -9,6 +10,7 @@ namespace hairbake {
 /// Thread-safe.
 void say_note(const std::string& text);
 void say_warning(const std::string& text);
+void say_warnings(const std::vector<std::string>& texts);
 void say_error(const std::string& text);
 
 }  // namespace hairbake

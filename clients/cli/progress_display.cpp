@@ -24,9 +24,11 @@ struct Reading {
 /// Turns reports of phases into readings of the whole, a few a second.
 class Display : public BakeProgress {
 public:
-    explicit Display(const std::vector<PlannedPhase>& phases)
+    explicit Display(const std::vector<Phase>& phases)
         : phases_(phases), phase_(phases.empty() ? "" : phases.front().name) {
-        for (const PlannedPhase& phase : phases_) total_ += phase.share;
+        double sum = 0;
+        for (const Phase& phase : phases_) sum += phase.share;
+        for (Phase& phase : phases_) phase.share /= sum;
     }
 
     void enter(std::string_view phase) final {
@@ -44,7 +46,7 @@ public:
         const Clock::time_point now = Clock::now();
         if (now - shown_ < std::chrono::milliseconds(100) && phase_fraction < 1) return;
         shown_ = now;
-        fraction_ = std::max(fraction_, fraction_at(phase_fraction));
+        fraction_ = std::max(fraction_, fraction_of_whole(phases_, phase_, phase_fraction));
         const double elapsed = std::chrono::duration<double>(now - start_).count();
         const bool known = fraction_ > 0.02 && elapsed > 0.2;
         show({phase_, phase_fraction, fraction_, elapsed, known ? elapsed * (1 - fraction_) / fraction_ : -1});
@@ -54,18 +56,9 @@ protected:
     virtual void show(const Reading& reading) = 0;
 
 private:
-    double fraction_at(double phase_fraction) const {
-        double before = 0;
-        for (const PlannedPhase& planned : phases_) {
-            if (planned.name == phase_) return (before + planned.share * std::clamp(phase_fraction, 0.0, 1.0)) / total_;
-            before += planned.share;
-        }
-        return 0;  // a phase that is not planned moves nothing
-    }
-
-    std::vector<PlannedPhase> phases_;
+    std::vector<Phase> phases_;
     std::string phase_;
-    double total_ = 0, fraction_ = 0;
+    double fraction_ = 0;
     Clock::time_point start_ = Clock::now(), shown_{};
     std::mutex mutex_;
 };
@@ -107,7 +100,7 @@ protected:
 
 }  // namespace
 
-std::unique_ptr<BakeProgress> make_progress_display(const std::string& mode, const std::vector<PlannedPhase>& phases) {
+std::unique_ptr<BakeProgress> make_progress_display(const std::string& mode, const std::vector<Phase>& phases) {
     if (mode == "json") return std::make_unique<JsonLines>(phases);
     if (mode == "auto" && isatty(STDERR_FILENO)) return std::make_unique<Bar>(phases);
     return std::make_unique<BakeProgress>();

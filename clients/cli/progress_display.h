@@ -7,19 +7,14 @@
 #include <vector>
 
 #include "core/base/progress.h"
+#include "core/request/stages.h"
 
 namespace hairbake {
-
-/// A phase and its share of the whole, in any unit.
-struct PlannedPhase {
-    std::string name;
-    double share;
-};
 
 /// `mode`: "auto" is a bar on standard error when that is a terminal, else nothing; "json" is one JSON object a line on
 /// standard output; "none" is silent. Updates at most ten times a second, from any thread. The first of `phases` has
 /// begun.
-std::unique_ptr<BakeProgress> make_progress_display(const std::string& mode, const std::vector<PlannedPhase>& phases);
+std::unique_ptr<BakeProgress> make_progress_display(const std::string& mode, const std::vector<Phase>& phases);
 
 /// `text` as a JSON string with its quotes. Bytes that are not UTF-8 stay as they are.
 std::string json_string(std::string_view text);

@@ -70,7 +70,7 @@ RenderRequest make_request(const RenderOptions& options) {
         const std::size_t sign = setting.find('=');
         if (sign == std::string::npos)
             throw Error(ErrorKind::usage, "--set " + setting + " is not of the form path=value", "set");
-        set_field(request.bake, setting.substr(0, sign), setting.substr(sign + 1));
+        say_warnings(set_field(request.bake, setting.substr(0, sign), setting.substr(sign + 1)));
     }
     if (request.result && (options.preset || !options.settings.empty()))
         throw Error(ErrorKind::usage, "--preset and --set say how to bake; a result folder is baked already", "set");
@@ -86,7 +86,7 @@ void run(const RenderOptions& options) {
     const std::optional<double> exposure = parse_exposure(options.exposure);
     RenderedPicture picture;
     {
-        std::vector<PlannedPhase> phases;
+        std::vector<Phase> phases;
         if (!request.result) phases = {{"read_hair", 1}, {"transmittance", 5}, {"irradiance", 1}};
         phases.insert(phases.end(), {{"reference", 1}, {"read_environment", 1}, {"render", 20}});
         const auto progress = make_progress_display(options.progress, phases);

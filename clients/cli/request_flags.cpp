@@ -24,13 +24,13 @@ const std::vector<FieldFlag>& field_flags() {
         {"--width", {"strand.width"}, "strand diameter in the model's unit, instead of the file's"},
         {"--opacity", {"strand.opacity"}, "share of light that one crossing stops, 0 to 1, or from_file"},
         {"--specular-maps", {"irradiance.specular_maps"}, "number of specular maps, 2 to 257"},
-        {"--exponent", {"irradiance.exponent"}, "Kajiya-Kay exponent, 0 to 4096"},
+        {"--exponent", {"fiber.kajiya_kay.exponent"}, "Kajiya-Kay exponent, 0 to 4096"},
         {"--face-size", {"irradiance.face_size"}, "texels per edge of a cube face, 4 to 256"},
         {"--method", {"irradiance.method"}, "irradiance by exact or sh"},
         {"--sh-bands",
          {"irradiance.sh_bands.diffuse", "irradiance.sh_bands.specular"},
          "bands of sh: a number or auto"},
-        {"--layout", {"irradiance.layout"}, "of the environment: auto, latlong, faces, horizontal_cross ..."},
+        {"--layout", {"environment_settings.layout"}, "of the environment: auto, latlong, faces, horizontal_cross ..."},
         {"--outputs", {"outputs"}, "files beside the manifest, of npy,exr,hair,ktx2,dds,raw,glb,vdb"},
     };
     return flags;
@@ -59,7 +59,7 @@ void add_request_flags(CLI::App& command, RequestFlags& flags, const std::string
     command.add_option("--env", flags.environment, environment_help);
     command.add_option("--occluder", flags.occluder, "mesh (OBJ) that stops light completely: the head");
     command.add_option("--receiver", flags.receiver, "mesh (OBJ) that the hair's shadow is baked on as well");
-    command.add_option("--preset", flags.preset, "draft, final or paper (see hairbake presets)");
+    command.add_option("--preset", flags.preset, "draft, final, paper or v1 (see hairbake presets)");
     command.add_option("--request", flags.request_file, "JSON file with fields of the request");
     for (const FieldFlag& flag : field_flags())
         command
@@ -77,7 +77,7 @@ std::string request_flags_help() { return "Later wins: defaults, --preset, --req
 BakeRequest make_request(const RequestFlags& flags) {
     BakeRequest request;
     if (flags.preset) apply_preset(request, *flags.preset);
-    if (flags.request_file) merge_json(request, text_of(*flags.request_file), *flags.request_file);
+    if (flags.request_file) say_warnings(merge_json(request, text_of(*flags.request_file), *flags.request_file));
     if (flags.hair) request.hair = flags.hair;
     if (flags.environment) request.environment = flags.environment;
     if (flags.occluder) request.occluder = flags.occluder;
@@ -89,7 +89,7 @@ BakeRequest make_request(const RequestFlags& flags) {
         const std::size_t sign = setting.find('=');
         if (sign == std::string::npos)
             throw Error(ErrorKind::usage, "--set " + setting + " is not of the form path=value", "set");
-        set_field(request, setting.substr(0, sign), setting.substr(sign + 1));
+        say_warnings(set_field(request, setting.substr(0, sign), setting.substr(sign + 1)));
     }
     validate(request);
     warn_of_unused(flags, request);

@@ -1,6 +1,6 @@
-// Puts what the service serves into one folder: our own modules as they are, and vendor/ from node_modules.
+// Writes the files that the service serves into one folder: our own modules unchanged, and vendor/ from node_modules.
 //   node clients/web/stage.mjs FOLDER
-// In the page's modules every import is a relative path: '../vendor/three.js', '../vendor/preact.js' ...
+// Every import of the page's modules is a relative path: '../vendor/three.js', '../vendor/preact.js' ...
 import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { dirname, join, posix } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -44,7 +44,7 @@ function stage(folder) {
     if (existsSync(index)) writeFileSync(index, with_preloads(readFileSync(index, 'utf8'), folder));
 }
 
-// A browser does not know packages by name.
+// A browser cannot import a package by its name.
 function with_paths(text) {
     return text.replace(/\bfrom\s*"preact"/g, 'from"./preact_core.js"');
 }
@@ -54,7 +54,7 @@ function without_map(text) {
     return text.replace(/^\/[/*]# sourceMappingURL=.*$/m, '');
 }
 
-// The modules that the first page is made of, so that a browser asks for all of them at once instead of level by level.
+// Preloads the modules of the first page, so that a browser fetches them all at once instead of level by level.
 function with_preloads(html, folder) {
     const modules = new Set();
     const add = name => {

@@ -16,7 +16,8 @@ namespace hairbake {
 // For errors of the caller alone: a wrong input is an Error, not an assertion. The condition must be cheap beside the
 // function that it guards, and must have no side effect.
 #ifdef HAIRBAKE_ASSERTS
-#define HAIRBAKE_ASSERT(condition) ((condition) ? void(0) : ::hairbake::assertion_failed(#condition, __FILE__, __LINE__))
+#define HAIRBAKE_ASSERT(condition) \
+    ((condition) ? void(0) : ::hairbake::assertion_failed(#condition, __FILE__, __LINE__))
 #else
 #define HAIRBAKE_ASSERT(condition) void(0)
 #endif

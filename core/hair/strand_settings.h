@@ -11,6 +11,7 @@ struct StrandSettings {
     double width_scale = 1;          ///< multiplies whichever width holds; > 0
     double opacity = 1;              ///< share of light that one strand crossing stops, [0, 1]
     bool opacity_from_file = false;  ///< take 1 - transparency of the file instead of `opacity`
+    double time = 0;                 ///< seconds; which sample of an animated model. Models of one sample ignore it
 };
 
 }  // namespace hairbake

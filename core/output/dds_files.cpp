@@ -4,6 +4,7 @@
 #include <span>
 
 #include "core/output/cube_mips.h"
+#include "core/output/format_table.h"
 #include "core/output/half.h"
 #include "core/output/little_endian.h"
 #include "core/output/map_metadata.h"
@@ -64,18 +65,23 @@ WrittenFile write_cube(const CubeTexels& map, int face_size, double scale, const
 
 }  // namespace
 
-std::vector<WrittenFile> write_map_dds(const IrradianceMaps& maps, const std::filesystem::path& folder,
-                                       Progress& progress) {
+std::vector<WrittenFile> write_map_dds(const MapSet& maps, const std::filesystem::path& folder, Progress& progress) {
     const double scale = half_scale(maps);
-    std::vector<WrittenFile> files{write_cube(maps.diffuse, maps.face_size, scale, folder / "diffuse.dds",
-                                              "diffuse map: cube map with mip levels, half floats, RGBA")};
-    for (std::size_t m = 0; m < maps.specular.size(); ++m) {
-        progress.check();
-        files.push_back(write_cube(maps.specular[m], maps.face_size, scale, folder / (specular_name(maps, m) + ".dds"),
-                                   "specular map: theta' " + number_text(theta_prime_degrees(maps, m)) +
-                                       " degrees, cube map with mip levels, half floats, RGBA"));
-    }
+    std::vector<WrittenFile> files;
+    for (const MapLobe& lobe : maps.lobes)
+        for (std::size_t i = 0; i < lobe.cubes.size(); ++i) {
+            progress.check();
+            const std::string slice =
+                lobe.has_slices() ? "theta' " + number_text(lobe.theta_prime_deg[i / lobe.orders]) + " degrees, " : "";
+            files.push_back(write_cube(lobe.cubes[i], maps.face_size, scale, folder / (lobe.file_name(i) + ".dds"),
+                                       lobe.name + " map: " + slice + "cube map with mip levels, half floats, RGBA"));
+        }
     return files;
+}
+
+std::vector<WrittenFile> write_dds(const OutputContext& context, const StagePart& part) {
+    if (!part.maps) return {};
+    return write_map_dds(*part.maps, context.folder, context.progress);
 }
 
 }  // namespace hairbake

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/base/progress.h"
-#include "core/irradiance/irradiance_maps.h"
 #include "core/output/file_sink.h"
+#include "core/result/map_set.h"
 
 namespace hairbake {
 
@@ -18,7 +18,6 @@ namespace hairbake {
 /// The format has no place for text: exponent, theta' and scale (half.h: the value is what is stored times the scale)
 /// stand in the manifest alone. Throws Error(bad_input) for maps that are not finite, Error(cancelled) between files,
 /// and what FileSink throws.
-std::vector<WrittenFile> write_map_dds(const IrradianceMaps& maps, const std::filesystem::path& folder,
-                                       Progress& progress);
+std::vector<WrittenFile> write_map_dds(const MapSet& maps, const std::filesystem::path& folder, Progress& progress);
 
 }  // namespace hairbake

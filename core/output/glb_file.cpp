@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <map>
 #include <span>
 #include <sstream>
 
 #include "core/base/error.h"
 #include "core/hair/tangents.h"
+#include "core/output/format_table.h"
 #include "core/output/sink_buffer.h"
 #include "core/output/versions.h"
 
@@ -76,23 +79,37 @@ std::vector<std::array<std::uint32_t, 2>> segment_indices(const HairModel& model
     return pairs;
 }
 
-tinygltf::Primitive make_primitive(const HairModel& model, const Transmittance& transmittance, GltfBuilder& builder) {
+/// "_BENT_CONE" of the array "bent_cone".
+std::string attribute_name(const ArrayKind& kind) {
+    std::string name = "_";
+    for (const char c : kind.name) name += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    return name;
+}
+
+/// One attribute a vector, or one a coefficient.
+void add_array(const VertexArray& array, GltfBuilder& builder, std::map<std::string, int>& attributes) {
+    const std::string name = attribute_name(*array.kind);
+    if (array.kind->layout != ArrayLayout::coefficients) {
+        constexpr int types[] = {TINYGLTF_TYPE_SCALAR, TINYGLTF_TYPE_VEC2, TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4};
+        attributes[name] = builder.add_attribute(array.values, types[array.components - 1], array.rows());
+        return;
+    }
+    const int view = builder.add_view(std::as_bytes(std::span(array.values)), TINYGLTF_TARGET_ARRAY_BUFFER,
+                                      array.components * sizeof(float));
+    for (std::size_t i = 0; i < array.components; ++i)
+        attributes[name + "_" + std::to_string(i)] = builder.add_accessor(
+            view, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_SCALAR, array.rows(), i * sizeof(float));
+}
+
+tinygltf::Primitive make_primitive(const HairModel& model, std::span<const VertexArray> arrays, GltfBuilder& builder) {
     const std::size_t vertices = model.vertex_count();
     tinygltf::Primitive primitive;
     auto& attributes = primitive.attributes;
     attributes["POSITION"] = builder.add_attribute(model.positions, TINYGLTF_TYPE_VEC3, vertices);
     set_bounds(model.positions, builder.gltf.accessors.back());
     attributes["_TANGENT"] = builder.add_attribute(vertex_tangents(model), TINYGLTF_TYPE_VEC3, vertices);
-    attributes["_TRANSMITTANCE"] = builder.add_attribute(transmittance.average, TINYGLTF_TYPE_SCALAR, vertices);
-    if (const std::size_t coefficients = transmittance.sh.size() / vertices) {
-        const int view = builder.add_view(std::as_bytes(std::span(transmittance.sh)), TINYGLTF_TARGET_ARRAY_BUFFER,
-                                          coefficients * sizeof(float));
-        for (std::size_t i = 0; i < coefficients; ++i)
-            attributes["_TRANSMITTANCE_SH_" + std::to_string(i)] = builder.add_accessor(
-                view, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_SCALAR, vertices, i * sizeof(float));
-    }
-    if (!transmittance.bent_cone.empty())
-        attributes["_BENT_CONE"] = builder.add_attribute(transmittance.bent_cone, TINYGLTF_TYPE_VEC4, vertices);
+    for (const VertexArray& array : arrays)
+        if (array.kind->owner == ArrayOwner::hair) add_array(array, builder, attributes);
 
     primitive.mode = TINYGLTF_MODE_POINTS;
     if (const auto pairs = segment_indices(model); !pairs.empty()) {
@@ -111,7 +128,7 @@ tinygltf::Value make_extras(const HairModel& model) {
         {"frame", tinygltf::Value(std::string("right-handed, Y up; tangents from root to tip"))}});
 }
 
-tinygltf::Model make_gltf(const HairModel& model, const Transmittance& transmittance) {
+tinygltf::Model make_gltf(const HairModel& model, std::span<const VertexArray> arrays) {
     GltfBuilder builder;
     tinygltf::Model& gltf = builder.gltf;
     gltf.asset.version = "2.0";
@@ -125,7 +142,7 @@ tinygltf::Model make_gltf(const HairModel& model, const Transmittance& transmitt
     }
     tinygltf::Mesh mesh;
     mesh.name = "hair";
-    mesh.primitives.push_back(make_primitive(model, transmittance, builder));
+    mesh.primitives.push_back(make_primitive(model, arrays, builder));
     mesh.extras = make_extras(model);
     gltf.meshes.push_back(mesh);
     tinygltf::Node node;
@@ -138,10 +155,11 @@ tinygltf::Model make_gltf(const HairModel& model, const Transmittance& transmitt
 
 }  // namespace
 
-void check_glb_size(std::uint64_t vertices, std::uint64_t strands, int sh_bands, bool bent_cone) {
+void check_glb_size(std::uint64_t vertices, std::uint64_t strands, const BakeRequest& request) {
     constexpr std::uint64_t limit = 0xFFFFFFFF, json = 1 << 16;  // the page in front is a few thousand bytes
-    const auto bands = static_cast<std::uint64_t>(sh_bands);
-    const std::uint64_t per_vertex = 12 + 12 + 4 + 4 * bands * bands + (bent_cone ? 16 : 0);
+    std::uint64_t per_vertex = 12 + 12;                          // position and tangent
+    for (const ArrayKind& kind : array_kinds())
+        if (kind.owner == ArrayOwner::hair) per_vertex += sizeof(float) * kind.components(request);
     const std::uint64_t bytes = vertices * per_vertex + (vertices - strands) * 8;
     if (bytes + json <= limit) return;
     std::ostringstream text;
@@ -150,23 +168,26 @@ void check_glb_size(std::uint64_t vertices, std::uint64_t strands, int sh_bands,
     throw Error(ErrorKind::bad_input, text.str(), "outputs");
 }
 
-WrittenFile write_glb(const HairModel& model, const Transmittance& transmittance, const std::filesystem::path& folder) {
-    const std::size_t vertices = model.vertex_count();
-    std::size_t bands = 0;
-    while (vertices && bands * bands < transmittance.sh.size() / vertices) ++bands;
-    check_glb_size(vertices, model.strand_count(), static_cast<int>(bands), !transmittance.bent_cone.empty());
-
+WrittenFile write_glb(const HairModel& model, std::span<const VertexArray> arrays, const BakeRequest& request,
+                      const std::filesystem::path& folder) {
+    check_glb_size(model.vertex_count(), model.strand_count(), request);
     FileSink sink(folder / "hair.glb");
     SinkBuffer buffer(sink);
     std::ostream stream(&buffer);
     stream.exceptions(std::ios::badbit);  // makes the stream rethrow what the sink throws
-    const tinygltf::Model gltf = make_gltf(model, transmittance);
+    const tinygltf::Model gltf = make_gltf(model, arrays);
     if (!tinygltf::TinyGLTF().WriteGltfSceneToStream(&gltf, stream, false, true))
         throw Error(ErrorKind::internal, "hair.glb: tinygltf could not write it");
     WrittenFile written = sink.finish();
-    written.shape = {vertices};
+    written.shape = {model.vertex_count()};
     written.content = "lines with POSITION, _TANGENT, _TRANSMITTANCE";
     return written;
+}
+
+std::vector<WrittenFile> write_glb_lines(const OutputContext& context, const StagePart& part) {
+    context.progress.check();
+    if (!find_array(part.arrays, average_transmittance_kind())) return {};
+    return {write_glb(*context.result.hair, part.arrays, context.result.request, context.folder)};
 }
 
 }  // namespace hairbake

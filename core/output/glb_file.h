@@ -1,11 +1,13 @@
 // The hair as lines with its transmittance: a binary glTF 2.0 file, written by tinygltf.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <span>
 
 #include "core/hair/hair_model.h"
 #include "core/output/file_sink.h"
-#include "core/volume/transmittance.h"
+#include "core/result/vertex_array.h"
 
 namespace hairbake {
 
@@ -23,10 +25,11 @@ namespace hairbake {
 /// hairbake.
 ///
 /// Throws what check_glb_size throws, Error(internal) with tinygltf's words, and what FileSink throws.
-WrittenFile write_glb(const HairModel& model, const Transmittance& transmittance, const std::filesystem::path& folder);
+WrittenFile write_glb(const HairModel& model, std::span<const VertexArray> arrays, const BakeRequest& request,
+                      const std::filesystem::path& folder);
 
 /// Throws Error(bad_input) when the file would be larger than the 4 GiB that the format can express: from about 119
 /// million vertices on without spherical harmonics and bent cone. Takes no memory, so it can be asked before the bake.
-void check_glb_size(std::uint64_t vertices, std::uint64_t strands, int sh_bands, bool bent_cone);
+void check_glb_size(std::uint64_t vertices, std::uint64_t strands, const BakeRequest& request);
 
 }  // namespace hairbake

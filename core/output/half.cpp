@@ -41,10 +41,11 @@ double half_scale(double largest) {
     return std::ldexp(1.0, std::max(exponent, -126));
 }
 
-double half_scale(const IrradianceMaps& maps) {
-    double largest = largest_of(maps.diffuse, maps.face_size, "diffuse");
-    for (std::size_t m = 0; m < maps.specular.size(); ++m)
-        largest = std::max(largest, largest_of(maps.specular[m], maps.face_size, "specular " + std::to_string(m)));
+double half_scale(const MapSet& maps) {
+    double largest = 0;
+    for (const MapLobe& lobe : maps.lobes)
+        for (std::size_t i = 0; i < lobe.cubes.size(); ++i)
+            largest = std::max(largest, largest_of(lobe.cubes[i], maps.face_size, lobe.label(i)));
     return half_scale(largest);
 }
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/irradiance/irradiance_maps.h"
+#include "core/result/map_set.h"
 
 namespace hairbake {
 
@@ -29,7 +29,7 @@ double half_scale(double largest);
 
 /// One scale for all maps of a bake, so that a shader knows one number. Throws Error(bad_input) naming the map, face,
 /// row and column of a value that is not finite.
-double half_scale(const IrradianceMaps& maps);
+double half_scale(const MapSet& maps);
 
 /// RGBA with alpha 1 (RGB alone is no texture format that can be relied upon), value / scale, in the order of `texels`.
 std::vector<Half4> to_half_texels(const CubeTexels& texels, double scale);

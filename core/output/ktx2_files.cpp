@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "core/output/format_table.h"
 #include "core/output/half.h"
 #include "core/output/little_endian.h"
 #include "core/output/map_metadata.h"
@@ -83,7 +84,7 @@ std::string file_start(int face_size, std::uint32_t layers, const std::string& p
     return bytes;
 }
 
-Metadata file_metadata(const IrradianceMaps& maps, const std::string& map, double scale, const std::string& primaries) {
+Metadata file_metadata(const MapSet& maps, const std::string& map, double scale, const std::string& primaries) {
     Metadata metadata = map_metadata(maps, map);
     metadata.insert(metadata.end(), {{"KTXorientation", "rd"},
                                      {"KTXwriter", "hairbake " + version()},
@@ -91,6 +92,12 @@ Metadata file_metadata(const IrradianceMaps& maps, const std::string& map, doubl
                                      {"hairbake:primaries", primaries},
                                      {"hairbake:scale", number_text(scale)}});
     return metadata;
+}
+
+std::string angles_text(const MapLobe& lobe) {
+    std::string angles;
+    for (const double angle : lobe.theta_prime_deg) angles += (angles.empty() ? "" : " ") + number_text(angle);
+    return angles;
 }
 
 WrittenFile finish(FileSink& sink, std::vector<std::size_t> shape, const std::string& content, double scale) {
@@ -103,33 +110,38 @@ WrittenFile finish(FileSink& sink, std::vector<std::size_t> shape, const std::st
 
 }  // namespace
 
-std::vector<WrittenFile> write_map_ktx2(const IrradianceMaps& maps, const std::string& primaries,
+std::vector<WrittenFile> write_map_ktx2(const MapSet& maps, const std::string& primaries,
                                         const std::filesystem::path& folder, Progress& progress) {
     const double scale = half_scale(maps);
-    const auto n = static_cast<std::size_t>(maps.face_size), layers = maps.specular.size();
-    const auto write = [&](FileSink& sink, const CubeTexels& map) {
-        progress.check();
-        sink.write(std::as_bytes(std::span<const Half4>(to_half_texels(map, scale))));
-    };
-    FileSink diffuse(folder / "diffuse.ktx2");
-    diffuse.write(file_start(maps.face_size, 0, primaries, file_metadata(maps, "diffuse", scale, primaries)));
-    write(diffuse, maps.diffuse);
-
-    Metadata metadata = file_metadata(maps, "specular", scale, primaries);
-    std::string angles;
-    for (std::size_t m = 0; m < layers; ++m) {
-        if (m > 0) angles += ' ';
-        angles += number_text(theta_prime_degrees(maps, m));
+    const auto n = static_cast<std::size_t>(maps.face_size);
+    std::vector<WrittenFile> files;
+    for (const MapLobe& lobe : maps.lobes) {
+        Metadata metadata = file_metadata(maps, lobe.name, scale, primaries);
+        std::vector<std::size_t> shape{6, n, n, 4};
+        std::uint32_t layers = 0;  // of a cube map that is no array
+        if (lobe.has_slices()) {
+            layers = static_cast<std::uint32_t>(lobe.cubes.size());
+            shape.insert(shape.begin(), lobe.cubes.size());
+            metadata.emplace_back("hairbake:" + lobe.name + "Maps", std::to_string(layers));
+            metadata.emplace_back("hairbake:thetaPrimeDeg", angles_text(lobe));
+        }
+        FileSink sink(folder / (lobe.name + ".ktx2"));
+        sink.write(file_start(maps.face_size, layers, primaries, metadata));
+        for (const CubeTexels& cube : lobe.cubes) {
+            progress.check();
+            sink.write(std::as_bytes(std::span<const Half4>(to_half_texels(cube, scale))));
+        }
+        files.push_back(finish(sink, shape,
+                               lobe.name + (lobe.has_slices() ? " maps: cube map array over theta', half floats, RGBA"
+                                                              : " map: cube map of half floats, RGBA"),
+                               scale));
     }
-    metadata.emplace_back("hairbake:specularMaps", std::to_string(layers));
-    metadata.emplace_back("hairbake:thetaPrimeDeg", angles);
-    FileSink specular(folder / "specular.ktx2");
-    specular.write(file_start(maps.face_size, static_cast<std::uint32_t>(layers), primaries, metadata));
-    for (const CubeTexels& map : maps.specular) write(specular, map);
+    return files;
+}
 
-    return {
-        finish(diffuse, {6, n, n, 4}, "diffuse map: cube map of half floats, RGBA", scale),
-        finish(specular, {layers, 6, n, n, 4}, "specular maps: cube map array over theta', half floats, RGBA", scale)};
+std::vector<WrittenFile> write_ktx2(const OutputContext& context, const StagePart& part) {
+    if (!part.maps) return {};
+    return write_map_ktx2(*part.maps, context.result.inputs.environment->primaries, context.folder, context.progress);
 }
 
 }  // namespace hairbake

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/base/progress.h"
-#include "core/irradiance/irradiance_maps.h"
 #include "core/output/file_sink.h"
+#include "core/result/map_set.h"
 
 namespace hairbake {
 
@@ -24,7 +24,7 @@ namespace hairbake {
 /// specularMaps (their count) and thetaPrimeDeg (degrees of each layer, separated by spaces).
 ///
 /// Throws Error(bad_input) for maps that are not finite, Error(cancelled) between layers, and what FileSink throws.
-std::vector<WrittenFile> write_map_ktx2(const IrradianceMaps& maps, const std::string& primaries,
+std::vector<WrittenFile> write_map_ktx2(const MapSet& maps, const std::string& primaries,
                                         const std::filesystem::path& folder, Progress& progress);
 
 }  // namespace hairbake

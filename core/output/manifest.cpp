@@ -9,10 +9,10 @@
 
 #include "core/base/error.h"
 #include "core/base/json_nesting.h"
-#include "core/output/map_metadata.h"
+#include "core/output/manifest_stages.h"
 #include "core/output/versions.h"
 #include "core/request/request_json.h"
-#include "core/request/request_keys.h"
+#include "core/request/stages.h"
 
 namespace hairbake {
 namespace {
@@ -28,24 +28,20 @@ Json triple(const Vec3<T>& v) {
 
 Json stages(const BakeResult& result) {
     Json block = Json::object();
-    if (result.transmittance)
-        block["transmittance"] = {{"key", result.transmittance_key}, {"algorithm", transmittance_algorithm}};
-    if (result.irradiance) block["irradiance"] = {{"key", result.irradiance_key}, {"algorithm", irradiance_algorithm}};
+    for (const StagePart& part : result.parts)
+        block[std::string(part.stage->name)] = {{"key", part.key}, {"algorithm", part.stage->algorithm}};
     return block;
 }
 
-Json hair_input(const BakeResult& result) {
-    const HairFacts& facts = result.hair_facts;
-    return {{"sha256", result.hair_inputs.hair},
-            {"strands", facts.strands},
+Json hair_input(const HairFacts& facts) {
+    return {{"strands", facts.strands},
             {"vertices", facts.vertices},
             {"segments", facts.segments},
             {"bounds", {triple(facts.bounds_min), triple(facts.bounds_max)}}};
 }
 
-Json environment_input(const BakeResult& result) {
-    const EnvironmentMap& map = *result.environment;
-    Json block{{"sha256", result.environment_digest}};
+Json environment_input(const EnvironmentMap& map) {
+    Json block = Json::object();
     if (map.shape == EnvironmentShape::cube)
         block["face_size"] = map.width;
     else
@@ -59,100 +55,26 @@ Json environment_input(const BakeResult& result) {
     return block;
 }
 
-Json occluder_input(const BakeResult& result) {
-    const MeshTopology& topology = result.occluder_topology;
-    return {{"sha256", result.hair_inputs.occluder},
-            {"positions", result.occluder->positions.size()},
-            {"triangles", result.occluder->triangles.size()},
-            {"closed", topology.closed},
-            {"open_edges", topology.open_edges},
-            {"irregular_edges", topology.irregular_edges}};
+Json occluder_input(const MeshFacts& mesh) {
+    return {{"positions", mesh.positions},
+            {"triangles", mesh.triangles},
+            {"closed", mesh.topology.closed},
+            {"open_edges", mesh.topology.open_edges},
+            {"irregular_edges", mesh.topology.irregular_edges}};
 }
 
-Json receiver_input(const BakeResult& result) {
-    return {{"sha256", result.hair_inputs.receiver},
-            {"positions", result.receiver->positions.size()},
-            {"triangles", result.receiver->triangles.size()}};
-}
+Json receiver_input(const MeshFacts& mesh) { return {{"positions", mesh.positions}, {"triangles", mesh.triangles}}; }
 
-Json inputs(const BakeResult& result) {
+Json inputs(const InputFacts& facts) {
     Json block = Json::object();
-    if (result.transmittance) block["hair"] = hair_input(result);
-    if (result.occluder) block["occluder"] = occluder_input(result);
-    if (result.receiver) block["receiver"] = receiver_input(result);
-    if (result.environment) block["environment"] = environment_input(result);
-    return block;
-}
-
-/// Means over the receiver's points; null when it has none.
-Json receiver_facts(const std::vector<float>& receiver) {
-    double plain = 0, cosine = 0;
-    for (std::size_t i = 0; i + 1 < receiver.size(); i += 2) {
-        plain += receiver[i];
-        cosine += receiver[i + 1];
-    }
-    const std::size_t positions = receiver.size() / 2;
-    const auto points = static_cast<double>(positions);
-    return {{"positions", positions},
-            {"mean", points > 0 ? Json(plain / points) : Json()},
-            {"cosine_mean", points > 0 ? Json(cosine / points) : Json()}};
-}
-
-Json transmittance_facts(const BakeResult& result) {
-    const Transmittance& transmittance = *result.transmittance;
-    const TransmittanceSettings& settings = result.request.transmittance;
-    double sum = 0;
-    for (const float a : transmittance.average) sum += a;
-    const auto& average = transmittance.average;
-    const bool any = !average.empty();
-    Json block{{"vertices", average.size()},
-               {"directions", transmittance.directions},
-               {"voxel_size", transmittance.voxel_size},
-               {"occupied_voxels", transmittance.occupied_voxels},
-               {"mean", any ? Json(sum / static_cast<double>(average.size())) : Json()},
-               {"minimum", any ? Json(*std::min_element(average.begin(), average.end())) : Json()},
-               {"maximum", any ? Json(*std::max_element(average.begin(), average.end())) : Json()}};
-    block["sh_bands"] = settings.sh_bands;
-    block["bent_cone"] = settings.bent_cone;
-    if (result.receiver) block["receiver"] = receiver_facts(transmittance.receiver);
-    return block;
-}
-
-/// Without a vertex to measure at there is no error, which is not an error of 0: null.
-Json error_bar(const ErrorBar& bar) {
-    const auto measured = [&](const auto& value) { return bar.vertices > 0 ? Json(value) : Json(); };
-    return {{"rmse", measured(bar.rmse)},
-            {"bias", measured(bar.bias)},
-            {"ci95", {{"rmse", measured(bar.rmse_ci95)}, {"bias", measured(bar.bias_ci95)}}},
-            {"vertices", bar.vertices},
-            {"inside_strand", bar.inside_strand},
-            {"directions", bar.directions}};
-}
-
-Json map_statistics(const MapStatistics& statistics) {
-    return {{"mean", triple(statistics.mean)},
-            {"minimum", triple(statistics.minimum)},
-            {"maximum", triple(statistics.maximum)},
-            {"clamped_negative_mass", statistics.clamped_negative_mass}};
-}
-
-Json irradiance_facts(const IrradianceMaps& maps, const IrradianceSettings& settings) {
-    Json block{{"face_size", maps.face_size}, {"exponent", maps.exponent}};
-    block["diffuse"] = map_statistics(maps.diffuse_statistics);
-    block["specular"] = Json::array();
-    for (std::size_t m = 0; m < maps.specular.size(); ++m) {
-        Json map{{"theta_prime_deg", theta_prime_degrees(maps, m)}};
-        if (m < maps.specular_statistics.size()) map.update(map_statistics(maps.specular_statistics[m]));
-        block["specular"].push_back(map);
-    }
-    block["interpolation_bound"] = triple(maps.interpolation_bound);
-    block["interpolation_bound_relative"] = maps.interpolation_bound_relative;
-    block["environment_sh_bands"] = maps.environment_sh_bands;
-    if (settings.method == IrradianceMethod::sh) {
-        block["sh_bands"] = {{"diffuse", maps.sh_bands_diffuse}, {"specular", maps.sh_bands_specular}};
-        block["predicted_error"] = {{"diffuse", maps.predicted_error_diffuse},
-                                    {"specular", maps.predicted_error_specular}};
-    }
+    const auto add = [&](const char* name, const Json& described) {
+        block[name] = {{"sha256", facts.digests.at(name)}};
+        block[name].update(described);
+    };
+    if (facts.hair) add("hair", hair_input(*facts.hair));
+    if (facts.occluder) add("occluder", occluder_input(*facts.occluder));
+    if (facts.receiver) add("receiver", receiver_input(*facts.receiver));
+    if (facts.environment) add("environment", environment_input(*facts.environment));
     return block;
 }
 
@@ -167,11 +89,14 @@ Json conventions() {
             {"units", "maps: radiance times steradian, Kd and Ks not applied; transmittance: 0 to 1"}};
 }
 
+/// What was repaired, or left out, of the inputs.
 Json repairs(const BakeResult& result) {
     Json block = Json::object();
-    if (result.transmittance) block["hair"] = {{"degenerate_segments", result.hair_facts.degenerate_segments}};
-    if (result.environment) {
-        const RadianceRepairs& done = result.environment->repairs;
+    for (const StagePart& part : result.parts)
+        if (const auto* facts = std::get_if<TransmittanceFacts>(&part.facts))
+            block["hair"] = {{"degenerate_segments", facts->degenerate_segments}};
+    if (result.inputs.environment) {
+        const RadianceRepairs& done = result.inputs.environment->repairs;
         block["environment"] = {{"negative_pixels", done.negative_pixels},
                                 {"nan_pixels", done.nan_pixels},
                                 {"infinite_pixels", done.infinite_pixels},
@@ -202,10 +127,11 @@ Json measured(const BakeResult& result) {
     Json block{{"about", "this block, timings_s and peak_memory_bytes differ between runs; nothing else does"},
                {"threads", result.measured.threads},
                {"processors", std::thread::hardware_concurrency()}};
-    const double seconds = result.measured.timings_s.at("transmittance");
-    if (result.transmittance && seconds > 0)
+    const auto seconds = result.measured.timings_s.find("transmittance");
+    const VertexArray* average = result.array(average_transmittance_kind());
+    if (average && seconds != result.measured.timings_s.end() && seconds->second > 0)
         block["rays_per_second"] =
-            static_cast<double>(result.transmittance->average.size()) * result.transmittance->directions / seconds;
+            static_cast<double>(average->rows()) * result.request.transmittance.directions / seconds->second;
     return block;
 }
 
@@ -215,10 +141,9 @@ std::string make_manifest(const BakeResult& result, const std::vector<WrittenFil
     Json manifest{{"format", format_name}, {"format_version", output_format}, {"id", result.id}};
     manifest["stages"] = stages(result);
     manifest["request"] = Json::parse(to_json(result.request));
-    manifest["inputs"] = inputs(result);
-    if (result.transmittance) manifest["transmittance"] = transmittance_facts(result);
-    manifest["error_bar"] = result.error_bar ? error_bar(*result.error_bar) : Json();
-    if (result.irradiance) manifest["irradiance"] = irradiance_facts(*result.irradiance, result.request.irradiance);
+    manifest["inputs"] = inputs(result.inputs);
+    for (const StagePart& part : result.parts) manifest.update(describe_part(part, result.request));
+    if (!manifest.contains("error_bar")) manifest["error_bar"] = nullptr;
     manifest["conventions"] = conventions();
     manifest["repairs"] = repairs(result);
     manifest["warnings"] = result.warnings;

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/bake_result.h"
 #include "core/output/file_sink.h"
+#include "core/result/bake_result.h"
 
 namespace hairbake {
 

@@ -8,7 +8,6 @@
 #include "core/output/hair_picture.h"
 #include "core/output/image_file.h"
 #include "core/output/latlong_picture.h"
-#include "core/output/map_metadata.h"
 #include "core/output/tone.h"
 #include "core/output/versions.h"
 
@@ -43,9 +42,10 @@ struct Sheet {
 
 // ---- transmittance -------------------------------------------------------------------------------------------------
 
-void draw_groom(Sheet& sheet, const BakeResult& result, View view, int left, int top, int size) {
+void draw_groom(Sheet& sheet, const HairModel& hair, std::span<const float> average, View view, int left, int top,
+                int size) {
     sheet.canvas.fill(left, top, size, size, panel);
-    const HairPicture picture = draw_hair(*result.hair, result.transmittance->average, view, 2 * size);
+    const HairPicture picture = draw_hair(hair, average, view, 2 * size);
     const Color empty = panel;
     for (int y = 0; y < size; ++y)
         for (int x = 0; x < size; ++x) {
@@ -96,32 +96,32 @@ void draw_histogram(Sheet& sheet, const std::vector<float>& average, int left, i
     sheet.text(x + 8, top + 8, format("mean %.4f", mean), 14, accent);
 }
 
-std::string error_text(const BakeResult& result) {
-    if (!result.error_bar) return "no error bar (reference_vertices 0)";
-    const ErrorBar& bar = *result.error_bar;
+std::string error_text(const TransmittanceFacts& facts) {
+    if (!facts.error_bar) return "no error bar (reference_vertices 0)";
+    const ErrorBar& bar = *facts.error_bar;
     if (bar.vertices == 0) return "no error bar (no vertex lies outside other strands)";
     return format("against %d traced vertices: RMSE %.4f (%.4f to %.4f), bias %+.4f", int(bar.vertices), bar.rmse,
                   bar.rmse_ci95[0], bar.rmse_ci95[1], bar.bias);
 }
 
-void draw_transmittance(Sheet& sheet, const BakeResult& result, int top) {
+void draw_transmittance(Sheet& sheet, const BakeResult& result, const StagePart& part, int top) {
     constexpr int size = 440;
+    const std::vector<float>& average = find_array(part.arrays, average_transmittance_kind())->values;
     int left = margin;
     if (result.hair && result.hair->vertex_count() > 0) {
-        draw_groom(sheet, result, View::front, left, top, size);
-        draw_groom(sheet, result, View::side, left + size + gap, top, size);
+        draw_groom(sheet, *result.hair, average, View::front, left, top, size);
+        draw_groom(sheet, *result.hair, average, View::side, left + size + gap, top, size);
         left += 2 * (size + gap) + 16;
     }
-    const Transmittance& transmittance = *result.transmittance;
     sheet.text(left, top + 22, "transmittance", 22, bright, Canvas::Align::left, true);
-    sheet.text(left, top + 50,
-               format("%zu vertices, %d directions, %s", transmittance.average.size(), transmittance.directions,
-                      result.request.transmittance.method == TransmittanceMethod::trace
-                          ? "traced"
-                          : format("voxel size %.4g", transmittance.voxel_size).c_str()),
-               15, dim);
-    sheet.text(left, top + 74, error_text(result), 13, dim);
-    draw_histogram(sheet, transmittance.average, left, top + 110, sheet_width - margin - left, size - 110 - 50);
+    if (const auto* facts = std::get_if<TransmittanceFacts>(&part.facts)) {
+        const bool traced = result.request.transmittance.method == TransmittanceMethod::trace;
+        const std::string how = traced ? "traced" : format("voxel size %.4g", facts->voxel_size);
+        sheet.text(left, top + 50,
+                   format("%zu vertices, %d directions, %s", average.size(), facts->directions, how.c_str()), 15, dim);
+        sheet.text(left, top + 74, error_text(*facts), 13, dim);
+    }
+    draw_histogram(sheet, average, left, top + 110, sheet_width - margin - left, size - 110 - 50);
 }
 
 // ---- irradiance ----------------------------------------------------------------------------------------------------
@@ -155,30 +155,41 @@ void draw_net(Sheet& sheet, const CubeTexels& cube, int face_size, double stops,
     }
 }
 
-void draw_diffuse(Sheet& sheet, const BakeResult& result, int top) {
-    const IrradianceMaps& maps = *result.irradiance;
-    const double stops = exposure_of({&maps.diffuse, 1});
+/// What stands beside the map of a lobe that has one.
+std::vector<std::string> map_facts(const BakeResult& result, const StagePart& part, const MapLobe& lobe, double stops) {
+    const int n = part.maps->face_size;
+    std::vector<std::string> lines{format("shown at %+.2f stops", stops),
+                                   "lat-long: centre +X, right of it +Z, top +Y"};
+    if (!lobe.statistics.empty()) {
+        const Vec3d& mean = lobe.statistics[0].mean;
+        lines.push_back(format("mean irradiance %.4g %.4g %.4g", mean.x, mean.y, mean.z));
+    }
+    lines.push_back(format("cube faces of %d x %d texels", n, n));
+    if (const auto* facts = std::get_if<IrradianceFacts>(&part.facts))
+        lines.push_back(facts->from_sh ? format("SH with %d bands diffuse, %d specular", facts->sh_bands_diffuse,
+                                                facts->sh_bands_specular)
+                                       : "exact sum over the environment's pixels");
+    if (result.inputs.environment) {
+        const EnvironmentMap& map = *result.inputs.environment;
+        lines.push_back(map.shape == EnvironmentShape::cube
+                            ? format("environment %d x %d x 6, %s", map.width, map.width, map.source_format.c_str())
+                            : format("environment %d x %d, %s", map.width, map.height, map.source_format.c_str()));
+    }
+    return lines;
+}
+
+/// A lobe of one map: as lat-long, as the net of its faces, and in words.
+void draw_single_map(Sheet& sheet, const BakeResult& result, const StagePart& part, const MapLobe& lobe, int top) {
+    const int n = part.maps->face_size;
+    const double stops = exposure_of(lobe.cubes);
     constexpr int width = 640, net_face = 108, net_left = margin + width + 24;
-    draw_map(sheet, maps.diffuse, maps.face_size, stops, margin, top, width);
-    draw_net(sheet, maps.diffuse, maps.face_size, stops, net_left, top, net_face);
+    draw_map(sheet, lobe.cubes[0], n, stops, margin, top, width);
+    draw_net(sheet, lobe.cubes[0], n, stops, net_left, top, net_face);
 
     constexpr int left = net_left + 4 * net_face + 24;
-    sheet.text(left, top + 22, "diffuse", 22, bright, Canvas::Align::left, true);
-    const Vec3d& mean = maps.diffuse_statistics.mean;
-    const EnvironmentMap& map = *result.environment;
-    const bool exact = result.request.irradiance.method == IrradianceMethod::exact;
-    const std::string lines[] = {
-        format("shown at %+.2f stops", stops),
-        "lat-long: centre +X, right of it +Z, top +Y",
-        format("mean irradiance %.4g %.4g %.4g", mean.x, mean.y, mean.z),
-        format("cube faces of %d x %d texels", maps.face_size, maps.face_size),
-        exact ? "exact sum over the environment's pixels"
-              : format("SH with %d bands diffuse, %d specular", maps.sh_bands_diffuse, maps.sh_bands_specular),
-        map.shape == EnvironmentShape::cube
-            ? format("environment %d x %d x 6, %s", map.width, map.width, map.source_format.c_str())
-            : format("environment %d x %d, %s", map.width, map.height, map.source_format.c_str())};
+    sheet.text(left, top + 22, lobe.name, 22, bright, Canvas::Align::left, true);
     int y = top + 54;
-    for (const std::string& words : lines) {
+    for (const std::string& words : map_facts(result, part, lobe, stops)) {
         sheet.text(left, y, words, 15, dim);
         y += 26;
     }
@@ -192,51 +203,72 @@ std::vector<std::size_t> shown_maps(std::size_t count) {
     return shown;
 }
 
-void draw_specular(Sheet& sheet, const IrradianceMaps& maps, int top) {
-    const double stops = exposure_of(maps.specular);
-    const std::vector<std::size_t> shown = shown_maps(maps.specular.size());
-    sheet.text(margin, top + 22, "specular", 22, bright, Canvas::Align::left, true);
+/// A lobe with slices: tiles of its maps.
+void draw_slices(Sheet& sheet, const MapSet& maps, const MapLobe& lobe, int top) {
+    const double stops = exposure_of(lobe.cubes);
+    const std::vector<std::size_t> shown = shown_maps(lobe.cubes.size());
+    sheet.text(margin, top + 22, lobe.name, 22, bright, Canvas::Align::left, true);
     sheet.text(margin + 124, top + 22,
-               format("%zu of %zu maps, exponent %g, all shown at %+.2f stops", shown.size(), maps.specular.size(),
+               format("%zu of %zu maps, exponent %g, all shown at %+.2f stops", shown.size(), lobe.cubes.size(),
                       maps.exponent, stops),
                15, dim);
     for (std::size_t i = 0; i < shown.size(); ++i) {
         const int left = margin + static_cast<int>(i % columns) * (tile_width + gap);
         const int tile_top = top + 44 + static_cast<int>(i / columns) * tile_step;
-        draw_map(sheet, maps.specular[shown[i]], maps.face_size, stops, left, tile_top, tile_width);
+        draw_map(sheet, lobe.cubes[shown[i]], maps.face_size, stops, left, tile_top, tile_width);
         sheet.text(left, tile_top + tile_height + 18,
-                   format("specular m=%02zu   theta' = %.4g deg", shown[i], theta_prime_degrees(maps, shown[i])), 13,
-                   dim);
+                   format("%s m=%02zu   theta' = %.4g deg", lobe.name.c_str(), shown[i],
+                          lobe.theta_prime_deg[shown[i] / lobe.orders]),
+                   13, dim);
     }
+}
+
+int lobe_height(const MapLobe& lobe) {
+    if (!lobe.has_slices()) return diffuse_height;
+    const auto tiles = static_cast<int>(shown_maps(lobe.cubes.size()).size());
+    return 44 + (tiles + columns - 1) / columns * tile_step;
 }
 
 // ---- the sheet -----------------------------------------------------------------------------------------------------
 
-int sheet_height(const BakeResult& result) {
-    int height = header_height + (result.transmittance ? transmittance_height - 40 : 0);
-    if (result.irradiance) {
-        const auto tiles = static_cast<int>(shown_maps(result.irradiance->specular.size()).size());
-        height += diffuse_height + 44 + (tiles + columns - 1) / columns * tile_step;
+bool has_transmittance(const StagePart& part) { return find_array(part.arrays, average_transmittance_kind()); }
+
+int part_height(const StagePart& part) {
+    int height = has_transmittance(part) ? transmittance_height - 40 : 0;
+    if (part.maps)
+        for (const MapLobe& lobe : part.maps->lobes) height += lobe_height(lobe);
+    return height;
+}
+
+void draw_part(Sheet& sheet, const BakeResult& result, const StagePart& part, int top) {
+    if (has_transmittance(part)) {
+        draw_transmittance(sheet, result, part, top);
+        top += transmittance_height - 40;
     }
-    return height + margin - 12;
+    if (!part.maps) return;
+    for (const MapLobe& lobe : part.maps->lobes) {
+        if (lobe.has_slices())
+            draw_slices(sheet, *part.maps, lobe, top);
+        else
+            draw_single_map(sheet, result, part, lobe, top);
+        top += lobe_height(lobe);
+    }
 }
 
 }  // namespace
 
 WrittenFile write_preview(const BakeResult& result, const std::filesystem::path& folder,
                           std::vector<std::string>& warnings) {
-    Sheet sheet{Canvas(sheet_width, sheet_height(result), background)};
+    int height = header_height + margin - 12;
+    for (const StagePart& part : result.parts) height += part_height(part);
+    Sheet sheet{Canvas(sheet_width, height, background)};
     sheet.text(margin, 52, "hairbake", 30, bright, Canvas::Align::left, true);
     sheet.text(margin + 176, 52, version() + "   bake " + result.id.substr(0, 12), 18, dim);
     sheet.canvas.fill(margin, 76, inner_width, 1, line);
     int top = header_height;
-    if (result.transmittance) {
-        draw_transmittance(sheet, result, top);
-        top += transmittance_height - 40;
-    }
-    if (result.irradiance) {
-        draw_diffuse(sheet, result, top);
-        draw_specular(sheet, *result.irradiance, top + diffuse_height);
+    for (const StagePart& part : result.parts) {
+        draw_part(sheet, result, part, top);
+        top += part_height(part);
     }
     if (!sheet.labels_drawn)
         warnings.push_back("preview.png has no labels: the font DejaVu Sans (package fonts-dejavu-core) is missing");

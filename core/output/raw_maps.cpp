@@ -3,32 +3,36 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "core/output/format_table.h"
 #include "core/output/half.h"
 #include "core/output/map_metadata.h"
+#include "core/output/raw_strands.h"
 
 namespace hairbake {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json list_of_maps(const IrradianceMaps& maps, std::size_t bytes) {
+Json list_of_maps(const MapSet& maps, std::size_t bytes) {
     Json list = Json::array();
-    list.push_back({{"name", "diffuse"}, {"offset", 0}, {"bytes", bytes}});
-    for (std::size_t m = 0; m < maps.specular.size(); ++m)
-        list.push_back({{"name", "specular"},
-                        {"theta_prime_deg", theta_prime_degrees(maps, m)},
-                        {"offset", (m + 1) * bytes},
-                        {"bytes", bytes}});
+    for (const MapLobe& lobe : maps.lobes)
+        for (std::size_t i = 0; i < lobe.cubes.size(); ++i) {
+            Json map{{"name", lobe.name}};
+            if (lobe.has_slices()) map["theta_prime_deg"] = lobe.theta_prime_deg[i / lobe.orders];
+            map["offset"] = list.size() * bytes;
+            map["bytes"] = bytes;
+            list.push_back(map);
+        }
     return list;
 }
 
-Json description(const IrradianceMaps& maps, const std::string& primaries, double scale) {
+Json description(const MapSet& maps, const std::string& primaries, double scale) {
     const auto n = static_cast<std::size_t>(maps.face_size);
     Json page{{"content", "hairbake irradiance maps"},
               {"file", "maps.f16"},
               {"type", "float16"},
               {"byte_order", "little"},
-              {"shape", {maps.specular.size() + 1, cube_faces, n, n, 4}},
+              {"shape", {maps.cube_count(), cube_faces, n, n, 4}},
               {"face_size", n},
               {"channels", "RGBA"}};
     page["faces"] = Json::array();
@@ -46,15 +50,15 @@ Json description(const IrradianceMaps& maps, const std::string& primaries, doubl
 
 }  // namespace
 
-std::vector<WrittenFile> write_map_raw(const IrradianceMaps& maps, const std::string& primaries,
+std::vector<WrittenFile> write_map_raw(const MapSet& maps, const std::string& primaries,
                                        const std::filesystem::path& folder, Progress& progress) {
     const double scale = half_scale(maps);
     FileSink texels(folder / "maps.f16");
-    texels.write(std::as_bytes(std::span<const Half4>(to_half_texels(maps.diffuse, scale))));
-    for (const CubeTexels& map : maps.specular) {
-        progress.check();
-        texels.write(std::as_bytes(std::span<const Half4>(to_half_texels(map, scale))));
-    }
+    for (const MapLobe& lobe : maps.lobes)
+        for (const CubeTexels& cube : lobe.cubes) {
+            progress.check();
+            texels.write(std::as_bytes(std::span<const Half4>(to_half_texels(cube, scale))));
+        }
     FileSink json(folder / "maps.json");
     const Json page = description(maps, primaries, scale);
     json.write(page.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
@@ -65,6 +69,16 @@ std::vector<WrittenFile> write_map_raw(const IrradianceMaps& maps, const std::st
     files[0].scale = scale;
     files[1].content = "layout and meaning of maps.f16";
     return files;
+}
+
+std::vector<WrittenFile> write_raw(const OutputContext& context, const StagePart& part) {
+    context.progress.check();
+    if (part.maps)
+        return write_map_raw(*part.maps, context.result.inputs.environment->primaries, context.folder,
+                             context.progress);
+    if (find_array(part.arrays, average_transmittance_kind()))
+        return write_strand_raw(*context.result.hair, part.arrays, context.folder);
+    return {};
 }
 
 }  // namespace hairbake

@@ -5,14 +5,13 @@
 #include <vector>
 
 #include "core/base/progress.h"
-#include "core/irradiance/irradiance_maps.h"
 #include "core/output/file_sink.h"
+#include "core/result/map_set.h"
 
 namespace hairbake {
 
 /// maps.f16: little-endian half floats [1 + (M + 1), 6, n, n, 4]: the diffuse map, then the specular maps by theta';
-/// face
-/// (+X -X +Y -Y +Z -Z), row from the top, column, RGBA with alpha 1. A face is n * n * 8 bytes, a map six of them:
+/// face (+X -X +Y -Y +Z -Z), row from the top, column, RGBA with alpha 1. A face is n * n * 8 bytes, a map six of them:
 ///     gl.texImage2D(gl.TEXTURE_CUBE_MAP_POSITIVE_X + face, 0, gl.RGBA16F, n, n, 0, gl.RGBA, gl.HALF_FLOAT,
 ///                   new Uint16Array(buffer, map.offset + face * n * n * 8, n * n * 4))
 /// with UNPACK_FLIP_Y_WEBGL off. (three.js negates x in its own cube look-ups.)
@@ -26,7 +25,7 @@ namespace hairbake {
 ///     maps.f16.
 ///
 /// Throws Error(bad_input) for maps that are not finite, Error(cancelled) between maps, and what FileSink throws.
-std::vector<WrittenFile> write_map_raw(const IrradianceMaps& maps, const std::string& primaries,
+std::vector<WrittenFile> write_map_raw(const MapSet& maps, const std::string& primaries,
                                        const std::filesystem::path& folder, Progress& progress);
 
 }  // namespace hairbake

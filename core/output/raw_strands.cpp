@@ -63,24 +63,23 @@ Json bounds_of(const std::vector<Vec3f>& positions) {
 
 }  // namespace
 
-std::vector<WrittenFile> write_strand_raw(const HairModel& model, const Transmittance& transmittance,
+std::vector<WrittenFile> write_strand_raw(const HairModel& model, std::span<const VertexArray> arrays,
                                           const std::filesystem::path& folder) {
     const std::size_t vertices = model.vertex_count();
-    const std::size_t coefficients = vertices ? transmittance.sh.size() / vertices : 0;
-    std::size_t bands = 0;
-    while (bands * bands < coefficients) ++bands;
-
+    const ArrayKind &average = average_transmittance_kind(), &sh = transmittance_sh_kind();
     ArrayFile file(folder / "strands.bin");
     file.add("positions", "float32", {vertices, 3}, std::span(model.positions));
     file.add("strand_begin", "uint32", {model.strand_begin.size()}, std::span(model.strand_begin));
     file.add("tangent_and_transmittance", "float16", {vertices, 4},
-             std::span<const Half4>(tangents_and_transmittance(model, transmittance.average)));
-    if (coefficients)
-        file.add("transmittance_sh", "float16", {vertices, coefficients},
-                 std::span<const Half>(to_halves(transmittance.sh)));
-    if (!transmittance.bent_cone.empty())
-        file.add("bent_cone", "float16", {vertices, 4}, std::span<const Half>(to_halves(transmittance.bent_cone)));
+             std::span<const Half4>(tangents_and_transmittance(model, find_array(arrays, average)->values)));
+    for (const VertexArray& array : arrays)
+        if (array.kind->owner == ArrayOwner::hair && array.kind != &average && vertices > 0)
+            file.add(std::string(array.kind->name).c_str(), "float16", array.shape(),
+                     std::span<const Half>(to_halves(array.values)));
 
+    std::size_t bands = 0;
+    if (const VertexArray* harmonics = find_array(arrays, sh); harmonics && vertices > 0)
+        while (bands * bands < harmonics->components) ++bands;
     FileSink json(folder / "strands.json");
     const Json page{{"content", "hairbake strands"},
                     {"file", "strands.bin"},

@@ -2,21 +2,23 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <vector>
 
 #include "core/hair/hair_model.h"
 #include "core/output/file_sink.h"
-#include "core/volume/transmittance.h"
+#include "core/result/vertex_array.h"
 
 namespace hairbake {
 
 /// strands.bin: arrays one after the other, little-endian, each at a multiple of 8 bytes, for V vertices in the file's
 /// order and S strands:
-///     positions                  float32 [V, 3]  model units (halves would show as steps: 11 bits over the whole
-///     groom) strand_begin               uint32 [S + 1]  strand s owns the vertices strand_begin[s] up to
-///     strand_begin[s + 1] tangent_and_transmittance  float16 [V, 4]  unit tangent from root to tip (tangents.h), and A
-///     in [0, 1] transmittance_sh           float16 [V, bands^2]  only with sh_bands: coefficients in the order l*l + l
-///     + m bent_cone                  float16 [V, 4]  only with bent_cone: unit axis, half-angle in radians
+///     positions                  float32 [V, 3]        model units (halves would show as steps: they have 11 bits)
+///     strand_begin               uint32  [S + 1]       strand s owns the vertices from strand_begin[s] up to, but
+///                                                      without, strand_begin[s + 1]
+///     tangent_and_transmittance  float16 [V, 4]        unit tangent from root to tip (tangents.h), and A in [0, 1]
+///     transmittance_sh           float16 [V, bands^2]  only with sh_bands: coefficients in the order l*l + l + m
+///     bent_cone                  float16 [V, 4]        only with bent_cone: unit axis, half-angle in radians
 /// 20 bytes a vertex without the last two. The segments to draw follow from strand_begin: vertices i and i + 1 of a
 /// strand.
 ///
@@ -25,7 +27,7 @@ namespace hairbake {
 /// {name, type, shape, offset, bytes} of the arrays that are there.
 ///
 /// Throws what FileSink throws.
-std::vector<WrittenFile> write_strand_raw(const HairModel& model, const Transmittance& transmittance,
+std::vector<WrittenFile> write_strand_raw(const HairModel& model, std::span<const VertexArray> arrays,
                                           const std::filesystem::path& folder);
 
 }  // namespace hairbake

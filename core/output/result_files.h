@@ -4,19 +4,20 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/bake_result.h"
 #include "core/base/progress.h"
+#include "core/hair/hair_model.h"
 #include "core/output/file_sink.h"
+#include "core/result/bake_result.h"
 
 namespace hairbake {
 
-/// Throws Error(bad_input) when one of the request's outputs cannot hold result.hair. Takes no time: to be asked before
-/// the bake.
-void check_outputs(const BakeResult& result);
+/// To be asked before the bake, as it takes no time.
+/// Throws Error(bad_input) when one of the request's outputs cannot hold the hair.
+void check_outputs(const BakeRequest& request, const HairModel& hair);
 
 /// Writes everything but the manifest into `folder`, which is empty: what request.outputs names of the stages that ran,
-/// environment_sh.json and preview.png. Adds what went less than well to result.warnings. Throws Error(cancelled)
-/// between files, and what FileSink and the writers throw.
+/// environment_sh.json and preview.png. Adds what went less than well to result.warnings.
+/// Throws Error(cancelled) between files, and what FileSink and the writers throw.
 std::vector<WrittenFile> write_files(BakeResult& result, const std::filesystem::path& folder, Progress& progress);
 
 }  // namespace hairbake

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/request/request_presets.h"
 
 namespace hairbake {
 namespace {
@@ -54,6 +56,7 @@ void check_strand(const StrandSettings& strand) {
     if (strand.width) check_positive("strand.width", *strand.width, 1e18);
     check_positive("strand.width_scale", strand.width_scale, 1e6);
     check_range("strand.opacity", strand.opacity, 0, 1);
+    check_range("strand.time", strand.time, -1e9, 1e9);
 }
 
 void check_transmittance(const TransmittanceSettings& settings) {
@@ -74,11 +77,12 @@ void check_transmittance(const TransmittanceSettings& settings) {
 
 void check_environment(const EnvironmentSettings& settings) {
     check_choice(
-        "irradiance.layout", settings.layout,
+        "environment_settings.layout", settings.layout,
         {"auto", "latlong", "faces", "horizontal_cross", "vertical_cross", "horizontal_strip", "vertical_strip"});
-    for (const double angle : settings.rotation_deg) check_range("irradiance.rotation_deg", angle, -36000, 36000);
-    check_range("irradiance.exposure_stops", settings.exposure_stops, -64, 64);
-    for (const double factor : settings.tint) check_range("irradiance.tint", factor, 0, 1e6);
+    for (const double angle : settings.rotation_deg)
+        check_range("environment_settings.rotation_deg", angle, -36000, 36000);
+    check_range("environment_settings.exposure_stops", settings.exposure_stops, -64, 64);
+    for (const double factor : settings.tint) check_range("environment_settings.tint", factor, 0, 1e6);
 }
 
 void check_light(const std::string& field, const DirectionalLight& light) {
@@ -91,10 +95,10 @@ void check_light(const std::string& field, const DirectionalLight& light) {
 }
 
 void check_irradiance(const IrradianceSettings& settings) {
-    check_choice("irradiance.model", settings.model, {"kajiya-kay"});
+    check_choice("fiber.model", settings.model, {"kajiya-kay"});
     check_range("irradiance.face_size", settings.face_size, 4, 256);
     check_range("irradiance.specular_maps", settings.specular_maps, 2, 257);
-    check_range("irradiance.exponent", settings.exponent, 0, 4096);
+    check_range("fiber.kajiya_kay.exponent", settings.exponent, 0, 4096);
     if (settings.sh_bands_diffuse) check_range("irradiance.sh_bands.diffuse", *settings.sh_bands_diffuse, 1, 128);
     if (settings.sh_bands_specular) check_range("irradiance.sh_bands.specular", *settings.sh_bands_specular, 1, 128);
     check_positive("irradiance.sh_error", settings.sh_error, 1);
@@ -127,7 +131,8 @@ bool BakeRequest::wants(const std::string& format) const {
 }
 
 const std::vector<std::string>& output_formats() {
-    static const std::vector<std::string> formats{"npy", "exr", "hair", "ktx2", "dds", "raw", "glb", "vdb"};
+    static const auto formats = nlohmann::json::parse(request_schema())["properties"]["outputs"]["items"]["enum"]
+                                    .get<std::vector<std::string>>();
     return formats;
 }
 

@@ -29,7 +29,7 @@ struct BakeRequest {
     bool wants(const std::string& format) const;
 };
 
-/// npy, exr, hair, ktx2, dds, raw, glb, vdb.
+/// Names of the outputs: npy, exr, hair, ktx2, dds, raw, glb, vdb. The request's schema has the list.
 const std::vector<std::string>& output_formats();
 
 /// Throws Error(usage) naming the first field out of range, what was found and what is allowed. A request that passes

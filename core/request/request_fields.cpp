@@ -1,5 +1,6 @@
 #include "core/request/request_fields.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -188,6 +189,18 @@ Field lights(const std::string& path) {
             }};
 }
 
+/// A field that stood at `first_path` in the first version.
+Field moved(Field field, std::string first_path) {
+    field.first_path = std::move(first_path);
+    return field;
+}
+
+/// A field that came after the first version, which did what `first_value` says.
+Field added(Field field, Json first_value) {
+    field.first_value = std::move(first_value);
+    return field;
+}
+
 // ---- the request, field by field -----------------------------------------------------------------------------------
 
 #define AT(member) \
@@ -205,6 +218,7 @@ std::vector<Field> make_fields() {
         optional_number("strand.width", AT(strand.width)),
         number("strand.width_scale", AT(strand.width_scale)),
         opacity("strand.opacity"),
+        added(number("strand.time", AT(strand.time)), 0.0),
         choice<T>("transmittance.method",
                   {{"volume", T::volume}, {"opacity_maps", T::opacity_maps}, {"trace", T::trace}},
                   AT(transmittance.method)),
@@ -221,26 +235,30 @@ std::vector<Field> make_fields() {
         number("transmittance.opacity_maps.layer_spacing", AT(transmittance.opacity_maps.layer_spacing)),
         integer("transmittance.opacity_maps.resolution", AT(transmittance.opacity_maps.resolution)),
         integer("transmittance.reference_vertices", AT(transmittance.reference_vertices)),
-        string("irradiance.model", AT(irradiance.model)),
+        moved(string("fiber.model", AT(irradiance.model)), "irradiance.model"),
+        moved(number("fiber.kajiya_kay.exponent", AT(irradiance.exponent)), "irradiance.exponent"),
+        moved(string("environment_settings.layout", AT(environment_settings.layout)), "irradiance.layout"),
+        moved(choice<LatLong>("environment_settings.latlong",
+                              {{"gltf", LatLong::gltf}, {"filament", LatLong::filament}, {"openexr", LatLong::openexr}},
+                              AT(environment_settings.latlong)),
+              "irradiance.latlong"),
+        moved(triple("environment_settings.rotation_deg", AT(environment_settings.rotation_deg)),
+              "irradiance.rotation_deg"),
+        moved(number("environment_settings.exposure_stops", AT(environment_settings.exposure_stops)),
+              "irradiance.exposure_stops"),
+        moved(triple("environment_settings.tint", AT(environment_settings.tint)), "irradiance.tint"),
+        moved(choice<InvalidRadiance>("environment_settings.invalid_radiance",
+                                      {{"reject", InvalidRadiance::reject}, {"clamp", InvalidRadiance::clamp}},
+                                      AT(environment_settings.invalid_radiance)),
+              "irradiance.invalid_radiance"),
         integer("irradiance.face_size", AT(irradiance.face_size)),
         integer("irradiance.specular_maps", AT(irradiance.specular_maps)),
-        number("irradiance.exponent", AT(irradiance.exponent)),
         choice<I>("irradiance.method", {{"exact", I::exact}, {"sh", I::sh}}, AT(irradiance.method)),
         integer_or_auto("irradiance.sh_bands.diffuse", AT(irradiance.sh_bands_diffuse)),
         integer_or_auto("irradiance.sh_bands.specular", AT(irradiance.sh_bands_specular)),
         number("irradiance.sh_error", AT(irradiance.sh_error)),
         boolean("irradiance.clamp_negative", AT(irradiance.clamp_negative)),
-        string("irradiance.layout", AT(environment_settings.layout)),
-        choice<LatLong>("irradiance.latlong",
-                        {{"gltf", LatLong::gltf}, {"filament", LatLong::filament}, {"openexr", LatLong::openexr}},
-                        AT(environment_settings.latlong)),
-        triple("irradiance.rotation_deg", AT(environment_settings.rotation_deg)),
-        number("irradiance.exposure_stops", AT(environment_settings.exposure_stops)),
-        triple("irradiance.tint", AT(environment_settings.tint)),
         lights("irradiance.lights"),
-        choice<InvalidRadiance>("irradiance.invalid_radiance",
-                                {{"reject", InvalidRadiance::reject}, {"clamp", InvalidRadiance::clamp}},
-                                AT(environment_settings.invalid_radiance)),
         string_list("outputs", AT(outputs)),
     };
 }
@@ -251,6 +269,18 @@ std::vector<Field> make_fields() {
 const std::vector<RequestField>& request_fields() {
     static const std::vector<RequestField> table = make_fields();
     return table;
+}
+
+const RequestField* find_field(const std::string& path) {
+    for (const RequestField& field : request_fields())
+        if (field.path == path || (!field.first_path.empty() && field.first_path == path)) return &field;
+    return nullptr;
+}
+
+void set_at(Json& object, const std::string& path, Json value) {
+    std::string pointer = "/" + path;
+    std::replace(pointer.begin(), pointer.end(), '.', '/');
+    object[Json::json_pointer(pointer)] = std::move(value);
 }
 
 }  // namespace hairbake

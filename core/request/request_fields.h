@@ -1,8 +1,9 @@
-// The request's fields one by one, each with its JSON form. Used by request_json.cpp alone.
+// The request's fields one by one, each with its JSON form. Private to core/request.
 #pragma once
 
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,16 +11,29 @@
 
 namespace hairbake {
 
-/// One field of the request. `path` is dotted; `set` throws Error(usage) for a value of the wrong type.
+/// One field of the request.
 struct RequestField {
     using Json = nlohmann::ordered_json;
-    std::string path;
+    std::string path;  ///< dotted: "transmittance.opacity_maps.layers"
     std::function<Json(const BakeRequest&)> get;
-    std::function<void(BakeRequest&, const Json&)> set;
+    std::function<void(BakeRequest&, const Json&)> set;  ///< throws Error(usage) for a value of the wrong type
+
+    /// Where the first version of hairbake had the field, if elsewhere. Requests may still name it so, and the text
+    /// that keys are made of always does: a field that moves changes no key.
+    std::string first_path = {};
+    /// Of a field that came after the first version: the value that means what the first version did. With this value
+    /// the field is left out of keys: a field that is added changes no key.
+    std::optional<Json> first_value = {};
 };
 
 /// All fields, in the order of the documentation.
 const std::vector<RequestField>& request_fields();
+
+/// The field of this path, or of this path in the first version; null where there is none.
+const RequestField* find_field(const std::string& path);
+
+/// Sets `value` into `object` at a dotted path, and makes the objects on the way.
+void set_at(RequestField::Json& object, const std::string& path, RequestField::Json value);
 
 /// Throws the Error(usage) for a value of the wrong type: `path`, what was found, what is allowed.
 [[noreturn]] void refuse_value(const std::string& path, const RequestField::Json& found, const std::string& allowed);

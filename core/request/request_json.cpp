@@ -1,6 +1,8 @@
 #include "core/request/request_json.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 
 #include "core/base/error.h"
@@ -11,12 +13,6 @@ namespace hairbake {
 namespace {
 
 using Json = RequestField::Json;
-
-const RequestField* find_field(const std::string& path) {
-    for (const RequestField& field : request_fields())
-        if (field.path == path) return &field;
-    return nullptr;
-}
 
 bool is_block(const std::string& path) {
     for (const RequestField& field : request_fields())
@@ -47,32 +43,57 @@ std::string names_in(const std::string& block) {
                 path);
 }
 
-void merge_object(BakeRequest& request, const Json& object, const std::string& block) {
-    if (!object.is_object()) refuse_value(block.empty() ? "the request" : block, object, "an object");
-    for (const auto& [name, value] : object.items()) {
-        const std::string path = block.empty() ? name : block + "." + name;
-        const bool dotted = name.find('.') != std::string::npos;  // paths are for --set alone
-        const RequestField* field = find_field(path);
-        if (dotted || (!field && !is_block(path))) refuse_unknown(path);
-        if (field)
-            field->set(request, value);
-        else
-            merge_object(request, value, path);
+/// "irradiance.tint is deprecated; ...": empty for a field at its own place.
+std::string deprecation(const RequestField& field, const std::string& path) {
+    return field.path == path ? "" : path + " is deprecated: the field is now " + field.path;
+}
+
+/// Sets the field from `path`, which may be its place in the first version; errors then name that place.
+void set_from(const RequestField& field, const std::string& path, BakeRequest& request, const Json& value) {
+    if (field.path == path) return field.set(request, value);
+    try {
+        field.set(request, value);
+    } catch (const Error& error) {
+        std::string message = error.what(), name = error.field();
+        if (message.starts_with(field.path)) message.replace(0, field.path.size(), path);
+        if (name.starts_with(field.path)) name.replace(0, field.path.size(), path);
+        throw Error(error.kind(), message, name);
     }
 }
 
-/// All fields, or those of one block ("strand").
-Json to_object(const BakeRequest& request, const std::string& block = {}) {
-    Json object = Json::object();
-    for (const RequestField& field : request_fields()) {
-        if (!block.empty() && !field.path.starts_with(block + ".")) continue;
-        std::string pointer = "/" + field.path;
-        for (char& c : pointer)
-            if (c == '.') c = '/';
-        object[Json::json_pointer(pointer)] = field.get(request);
+/// Merges JSON objects into a request.
+class Merge {
+public:
+    explicit Merge(BakeRequest& request) : request_(request) {}
+
+    void object(const Json& object, const std::string& block) {
+        if (!object.is_object()) refuse_value(block.empty() ? "the request" : block, object, "an object");
+        for (const auto& [name, value] : object.items()) {
+            const std::string path = block.empty() ? name : block + "." + name;
+            const bool dotted = name.find('.') != std::string::npos;  // paths are for --set alone
+            const RequestField* field = find_field(path);
+            if (dotted || (!field && !is_block(path))) refuse_unknown(path);
+            if (field)
+                set(*field, path, value);
+            else
+                this->object(value, path);
+        }
     }
-    return object;
-}
+
+    std::vector<std::string> warnings;
+
+private:
+    void set(const RequestField& field, const std::string& path, const Json& value) {
+        if (!set_.insert(&field).second)
+            throw Error(ErrorKind::usage,
+                        field.path + " is given twice, also as " + field.first_path + "; allowed is once", path);
+        set_from(field, path, request_, value);
+        if (std::string warning = deprecation(field, path); !warning.empty()) warnings.push_back(std::move(warning));
+    }
+
+    BakeRequest& request_;
+    std::set<const RequestField*> set_;
+};
 
 /// `path` is the field that it is for.
 Json json_or_text(const std::string& text, const std::string& path) {
@@ -95,23 +116,28 @@ Json list_of(const std::string& text, const std::string& path) {
 }  // namespace
 
 std::string to_json(const BakeRequest& request, int indent) {
-    return to_object(request).dump(indent, ' ', false, Json::error_handler_t::replace);
+    Json object = Json::object();
+    for (const RequestField& field : request_fields()) set_at(object, field.path, field.get(request));
+    return object.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
-void merge_json(BakeRequest& request, std::string_view text, const std::string& source) {
+std::vector<std::string> merge_json(BakeRequest& request, std::string_view text, const std::string& source) {
     check_nesting(text, source, ErrorKind::usage);
     BakeRequest merged = request;
+    Merge merge(merged);
     try {
-        merge_object(merged, Json::parse(text), "");
+        merge.object(Json::parse(text), "");
     } catch (const Json::exception& error) {
         throw Error(ErrorKind::usage, source + " is not JSON: " + error.what());
     } catch (const Error& error) {
         throw Error(error.kind(), source + ": " + error.what(), error.field());
     }
     request = std::move(merged);
+    for (std::string& warning : merge.warnings) warning = source + ": " + warning;
+    return std::move(merge.warnings);
 }
 
-void set_field(BakeRequest& request, const std::string& path, const std::string& value) {
+std::vector<std::string> set_field(BakeRequest& request, const std::string& path, const std::string& value) {
     const RequestField* field = find_field(path);
     if (!field && is_block(path))
         throw Error(ErrorKind::usage, path + " is a block; set one of its fields: " + names_in(path), path);
@@ -123,24 +149,16 @@ void set_field(BakeRequest& request, const std::string& path, const std::string&
     if (path == "hair" || path == "environment" || path == "occluder" || path == "receiver")
         if (!parsed.is_null()) parsed = value;  // a file may be called 12 or true
     BakeRequest changed = request;
-    field->set(changed, parsed);
+    set_from(*field, path, changed, parsed);
     request = std::move(changed);
+    std::string warning = deprecation(*field, path);
+    return warning.empty() ? std::vector<std::string>() : std::vector{std::move(warning)};
 }
 
 std::vector<std::string> field_paths() {
     std::vector<std::string> paths;
     for (const RequestField& field : request_fields()) paths.push_back(field.path);
     return paths;
-}
-
-std::string canonical_transmittance_settings(const BakeRequest& request) {
-    nlohmann::json sorted = to_object(request, "transmittance");
-    sorted["strand"] = to_object(request, "strand")["strand"];
-    return sorted.dump();
-}
-
-std::string canonical_irradiance_settings(const BakeRequest& request) {
-    return nlohmann::json(to_object(request, "irradiance")["irradiance"]).dump();
 }
 
 }  // namespace hairbake

@@ -12,21 +12,21 @@ namespace hairbake {
 /// The whole request as JSON text: every field, in the order of the documentation. `indent` < 0 gives one line.
 std::string to_json(const BakeRequest& request, int indent = 2);
 
-/// Takes over the fields that the JSON object `text` names and leaves the others as they are; `source` stands for
-/// it in messages. Nothing is changed when it throws: Error(usage) naming the field, what was found and what is
-/// allowed, for broken JSON, JSON of more than 64 levels, an unknown field or a wrong type. Ranges are validate()'s.
-void merge_json(BakeRequest& request, std::string_view text, const std::string& source);
+/// Takes over the fields that the JSON object `text` names and leaves the others as they are.
+///   source: stands for the text in messages
+/// Returns a warning for each field that `text` names by its deprecated place of the first version
+/// ("irradiance.rotation_deg" for environment_settings.rotation_deg).
+/// Throws Error(usage) naming the field, what was found and what is allowed, for broken JSON, JSON of more than 64
+/// levels, an unknown field, a field given at both of its places, or a wrong type; then nothing is changed. Ranges are
+/// validate()'s.
+std::vector<std::string> merge_json(BakeRequest& request, std::string_view text, const std::string& source);
 
-/// Sets one field by its path: set_field(request, "transmittance.method", "trace"). `value` is JSON or, where it
-/// is not, plain text; a list may be given with commas ("npy,exr", "0,90,0"). Throws as merge_json.
-void set_field(BakeRequest& request, const std::string& path, const std::string& value);
+/// Sets one field by its path: set_field(request, "transmittance.method", "trace").
+///   value: JSON or, where it is not, plain text; a list may be given with commas ("npy,exr", "0,90,0")
+/// Returns and throws as merge_json.
+std::vector<std::string> set_field(BakeRequest& request, const std::string& path, const std::string& value);
 
 /// Paths of all fields, "irradiance.sh_bands.diffuse" and the like, in the order of to_json.
 std::vector<std::string> field_paths();
-
-/// Canonical JSON (sorted keys, one line) of what the two stages read from the request, paths of files left out.
-/// Stage keys are made of these.
-std::string canonical_transmittance_settings(const BakeRequest& request);
-std::string canonical_irradiance_settings(const BakeRequest& request);
 
 }  // namespace hairbake

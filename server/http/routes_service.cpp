@@ -1,7 +1,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "core/request/request_keys.h"
+#include "core/request/stages.h"
 #include "server/http/openapi.h"
 #include "server/http/problem.h"
 #include "server/http/replies.h"
@@ -14,12 +14,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 HttpReply version() {
+    Json algorithms = Json::object();
+    for (const Stage& stage : stages()) algorithms[std::string(stage.name)] = stage.algorithm;
     return json_reply(
-        200, Json{{"name", "hairbaked"},
-                  {"version", HAIRBAKE_VERSION},
-                  {"api", "v1"},
-                  {"algorithms", {{"transmittance", transmittance_algorithm}, {"irradiance", irradiance_algorithm}}}}
-                 .dump());
+        200,
+        Json{{"name", "hairbaked"}, {"version", HAIRBAKE_VERSION}, {"api", "v1"}, {"algorithms", algorithms}}.dump());
 }
 
 HttpReply ready(Service& service) {

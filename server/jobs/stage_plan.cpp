@@ -4,7 +4,7 @@
 
 #include "core/base/digest.h"
 #include "core/request/request_json.h"
-#include "core/request/request_keys.h"
+#include "core/request/stages.h"
 
 namespace hairbake {
 namespace {
@@ -13,54 +13,31 @@ std::string digest_in(const std::optional<std::string>& file) {
     return file ? file->substr(std::string("sha256:").size()) : std::string();
 }
 
-TransmittanceInputs transmittance_inputs(const BakeRequest& request) {
-    return {digest_in(request.hair), digest_in(request.occluder), digest_in(request.receiver)};
+InputDigests digests_of(const BakeRequest& request) {
+    InputDigests digests;
+    const std::pair<const char*, const std::optional<std::string>*> fields[] = {{"hair", &request.hair},
+                                                                                {"environment", &request.environment},
+                                                                                {"occluder", &request.occluder},
+                                                                                {"receiver", &request.receiver}};
+    for (const auto& [field, file] : fields)
+        if (*file) digests[field] = digest_in(*file);
+    return digests;
 }
 
-/// The formats in which this stage writes files. A format is left out only where the stage surely has none of it.
-std::vector<std::string> formats_of(const BakeRequest& request, std::initializer_list<const char*> never) {
-    std::vector<std::string> formats;
-    for (const std::string& format : request.outputs)
-        if (std::find(never.begin(), never.end(), format) == never.end()) formats.push_back(format);
-    std::sort(formats.begin(), formats.end());
-    return formats;
-}
-
-void make_key(StagePlan& stage, const BakeRequest& alone) {
+StagePlan plan_stage(const Stage& stage, const BakeRequest& request) {
+    const InputDigests digests = digests_of(request);
+    StagePlan plan{std::string(stage.name), {}, stage_key(stage, digests, request), {}, {}};
+    for (const std::string_view input : stage.inputs)
+        if (const auto found = digests.find(input); found != digests.end())
+            if (std::find(plan.inputs.begin(), plan.inputs.end(), found->second) == plan.inputs.end())
+                plan.inputs.push_back(found->second);
+    const BakeRequest alone = request_alone(stage, request);
     Digest digest;
-    digest.add("hairbake stage " + std::to_string(output_format) + "\n" + stage.core_key + "\n");
+    digest.add("hairbake stage " + std::to_string(output_format) + "\n" + plan.core_key + "\n");
     for (const std::string& format : alone.outputs) digest.add(format + "\n");
-    stage.key = digest.hex();
-    stage.request = to_json(alone, -1);
-}
-
-StagePlan transmittance_plan(const BakeRequest& request) {
-    BakeRequest alone;
-    alone.hair = request.hair;
-    alone.occluder = request.occluder;
-    alone.receiver = request.receiver;
-    alone.strand = request.strand;
-    alone.transmittance = request.transmittance;
-    alone.outputs = formats_of(request, {"exr", "ktx2", "dds"});
-    const TransmittanceInputs inputs = transmittance_inputs(request);
-    StagePlan stage{"transmittance", {}, transmittance_key(inputs, request), {}, {}};
-    for (const std::string& digest : {inputs.hair, inputs.occluder, inputs.receiver})
-        if (!digest.empty() && std::find(stage.inputs.begin(), stage.inputs.end(), digest) == stage.inputs.end())
-            stage.inputs.push_back(digest);
-    make_key(stage, alone);
-    return stage;
-}
-
-StagePlan irradiance_plan(const BakeRequest& request) {
-    BakeRequest alone;
-    alone.environment = request.environment;
-    alone.environment_settings = request.environment_settings;
-    alone.irradiance = request.irradiance;
-    alone.outputs = formats_of(request, {"hair", "glb", "vdb"});
-    const std::string digest = digest_in(request.environment);
-    StagePlan stage{"irradiance", {}, irradiance_key(digest, request), {}, {digest}};
-    make_key(stage, alone);
-    return stage;
+    plan.key = digest.hex();
+    plan.request = to_json(alone, -1);
+    return plan;
 }
 
 }  // namespace
@@ -72,20 +49,20 @@ std::vector<const StagePlan*> BakePlan::stages() const {
     return list;
 }
 
-std::string bake_id_of(const BakeRequest& request) {
-    return bake_id(request.hair ? transmittance_key(transmittance_inputs(request), request) : "",
-                   request.environment ? irradiance_key(digest_in(request.environment), request) : "", request);
-}
+std::string bake_id_of(const BakeRequest& request) { return plan_bake(request).id; }
 
 BakePlan plan_bake(const BakeRequest& request) {
     BakePlan plan;
     plan.request = to_json(request, -1);
     plan.hair = digest_in(request.hair);
     plan.environment = digest_in(request.environment);
-    if (request.hair) plan.transmittance = transmittance_plan(request);
-    if (request.environment) plan.irradiance = irradiance_plan(request);
-    plan.id = bake_id(plan.transmittance ? plan.transmittance->core_key : "",
-                      plan.irradiance ? plan.irradiance->core_key : "", request);
+    StageKeys keys;
+    for (const Stage* stage : stages_of(request)) {
+        StagePlan made = plan_stage(*stage, request);
+        keys[made.kind] = made.core_key;
+        (made.kind == "transmittance" ? plan.transmittance : plan.irradiance) = std::move(made);
+    }
+    plan.id = bake_id(keys, request);
     return plan;
 }
 

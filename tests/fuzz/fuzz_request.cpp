@@ -4,7 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/request/request_json.h"
-#include "core/request/request_keys.h"
+#include "core/request/stages.h"
 #include "tests/fuzz/demand.h"
 
 namespace {
@@ -16,8 +16,8 @@ void check_request(const BakeRequest& request) {
     BakeRequest again;
     merge_json(again, text, "written");
     demand(to_json(again) == text, "a written request reads the same");
-    demand(transmittance_key({}, again) == transmittance_key({}, request), "equal requests have equal keys");
-    demand(irradiance_key("", again) == irradiance_key("", request), "equal requests have equal keys");
+    for (const Stage& stage : stages())
+        demand(stage_key(stage, {}, again) == stage_key(stage, {}, request), "equal requests have equal keys");
 }
 
 }  // namespace

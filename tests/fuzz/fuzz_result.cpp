@@ -28,8 +28,11 @@ std::string manifest_with(const std::string& name, std::string_view bytes) {
 }
 
 void check_result(const StoredResult& result) {
-    for (const float a : result.average) demand(a >= 0 && a <= 1, "A is 0 to 1");
-    demand(result.sh.empty() || result.sh.size() == result.average.size(), "one coefficient a vertex");
+    for (const VertexArray& array : result.arrays) {
+        demand(array.values.size() == array.rows() * array.components, "rows are whole");
+        for (const float value : array.values)
+            demand(!array.kind->is_share || (value >= 0 && value <= 1), "shares are 0 to 1");
+    }
 }
 
 }  // namespace

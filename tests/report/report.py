@@ -1,7 +1,7 @@
 """Makes the report: pictures, tables and the command line behind each, as build/report/index.html.
 
 Usage: report.py ROOT PROGRAM FOLDER [--full | --tiny] [--data DIR] [--only SECTION...]. Paths are relative to ROOT. FOLDER is made anew.
-Needs Python's standard library and the programs only (oiiotool for the README's pictures).
+Needs Python's standard library and the programs only (oiiotool for the pictures of docs/accuracy.md).
 """
 import argparse
 import shutil
@@ -18,8 +18,8 @@ from real_data_section import real_data
 from settings import Scene, Size
 
 
-def readme_pictures(root, folder):
-    """A few of the pictures, put side by side, small enough for the README."""
+def document_pictures(root, folder):
+    """The pictures of docs/accuracy.md: several put side by side, at three quarters of their size. Copy them to docs/images."""
     pictures = folder / "pictures"
     sheets = {
         "decoupling.png": ["reference-sky.png", "decoupled-sky-0.png", "decoupled-sky-5.png",
@@ -27,12 +27,12 @@ def readme_pictures(root, folder):
         "specular_maps.png": ["specular-brute.png", "specular-33.png", "specular-9.png", "specular-5.png"],
         "transmittance.png": ["with-sky.png", "without-sky.png", "with-overcast.png", "without-overcast.png"],
     }
-    (root / folder / "readme").mkdir()
+    (root / folder / "document").mkdir()
     for name, parts in sheets.items():
         columns = 3 if len(parts) == 6 else 4
         if all((root / pictures / part).exists() for part in parts):
             subprocess.run(["oiiotool", *[str(pictures / part) for part in parts], "--mosaic:pad=4",
-                            f"{columns}x{len(parts) // columns}", "--resize", "75%", "-o", str(folder / "readme" / name)],
+                            f"{columns}x{len(parts) // columns}", "--resize", "75%", "-o", str(folder / "document" / name)],
                            cwd=root, check=True)
 
 
@@ -73,7 +73,7 @@ def main():
         page.write()
     if options.data and (options.data / "hair" / "sintel.hair").exists() and not options.only:
         real_data(scene, page, options.data)
-    readme_pictures(root, folder)
+    document_pictures(root, folder)
     page.note(f"Made in {time.monotonic() - start:.0f} s.")
     print(f"the report is {page.write().relative_to(root)}")
 

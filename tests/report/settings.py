@@ -21,7 +21,7 @@ class Size:
 
     @staticmethod
     def published():
-        """For the README: more hair, larger pictures, less noise, and the published models too."""
+        """For docs/accuracy.md: more hair, larger pictures, less noise, and the published models too."""
         return Size(vertices=200_000, width_scale=5, pixels=320, light_samples=64, full=True)
 
     @staticmethod

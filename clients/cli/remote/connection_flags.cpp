@@ -81,7 +81,7 @@ ServerOptions server_options(const ConnectionFlags& flags) {
     return options;
 }
 
-void run_phase(const ConnectionFlags& flags, const ServerOptions& options, const std::vector<PlannedPhase>& phases,
+void run_phase(const ConnectionFlags& flags, const ServerOptions& options, const std::vector<Phase>& phases,
                const std::function<void(Server&)>& work) {
     const auto progress = make_progress_display(flags.progress, phases);
     const SignalWatch watch(*progress, [] {});

@@ -30,7 +30,7 @@ ServerOptions server_options(const ConnectionFlags& flags);
 
 /// Runs `work` against the server with a progress display of these stages, which is gone when this returns. Throws what
 /// `work` throws; an answer of an unexpected shape is RemoteError(refused).
-void run_phase(const ConnectionFlags& flags, const ServerOptions& options, const std::vector<PlannedPhase>& phases,
+void run_phase(const ConnectionFlags& flags, const ServerOptions& options, const std::vector<Phase>& phases,
                const std::function<void(Server&)>& work);
 
 /// Throws Error(usage) unless all are ids.

@@ -1,15 +1,15 @@
-// Hair models or environments: what is there, and how more gets there.
+// The gallery of stored hair models or environments, with the upload panel above it.
 import { html, useMemo, useState } from '../vendor/preact.js';
 import { use_app, use_list } from './hooks.js';
 import { fact_rows, label_of, names_by_digest, summary, versions_by_path, warnings } from './input_facts.js';
 import { Cut, Facts, Loading, ProblemNote, Warnings } from './parts.js';
 import { file_names } from './uploads/uploads.js';
 import { UploadPanel } from './uploads/upload_panel.js';
-import { name_from_file } from './words.js';
+import { name_from_file } from './name_text.js';
 
 /**
- * { items, more, names: { sha256: [path] }, versions: { path: version }, files: { sha256: file name }, problem,
- * reload }
+ * The stored inputs of a kind and their names. Returns { items, more, names: { sha256: [path] },
+ * versions: { path: version }, files: { sha256: file name }, problem, reload() }.
  */
 export function use_inputs(kind) {
     const list = use_list(`/v1/${kind}s`, `${kind}s`);
@@ -25,7 +25,7 @@ export function use_inputs(kind) {
     return { items: list.items, more, names, versions, files, problem: list.problem ?? named.problem, reload };
 }
 
-/** Points a name at a file: entry is { kind, id } with the file's digest as id. */
+/** Points a name at a file. entry: { kind, id }, id is the file's digest; suggestion: the name that is filled in. */
 export function NameForm({ entry, suggestion, on_named }) {
     const { api, announce } = use_app();
     const [problem, set_problem] = useState(null);
@@ -50,11 +50,11 @@ export function NameForm({ entry, suggestion, on_named }) {
                 value=${suggestion}
                 aria-describedby=${`help-${entry.id}`} />
             <small id=${`help-${entry.id}`}>Letters, digits, ".", "_", "-", and "/" between parts.
-                A name that is taken gets a new version.</small>
+                A name that exists gets a new version.</small>
         </label>
         <label>Note <input name="note" maxlength="500" /></label>
         <${ProblemNote} problem=${problem} />
-        <button type="submit" class="small">Put the name here</button>
+        <button type="submit" class="small">Give this name</button>
     </form>`;
 }
 
@@ -66,16 +66,16 @@ function Names({ kind, paths }) {
         href=${`#/names/${kind}/${path}`}>${path}</a>`)}</p>`;
 }
 
-const at_once = 6; // pictures that are seen first; the others come when they are scrolled to
+const eager_pictures = 6; // at the top of the page; others are loaded when they are scrolled to
 
 function Card({ entry, index, label, paths, files, on_change }) {
     const { api, announce } = use_app();
     const [problem, set_problem] = useState(null);
     const remove = async () => {
-        if (!confirm(`Forget ${label} and its file?`)) return;
+        if (!confirm(`Delete ${label} and its file?`)) return;
         try {
             await api.remove(entry.links.self);
-            announce(`${label} is gone.`);
+            announce(`${label} is deleted.`);
             on_change();
         } catch (failure) {
             set_problem(failure);
@@ -84,7 +84,7 @@ function Card({ entry, index, label, paths, files, on_change }) {
     const field = entry.kind === 'model' ? 'hair' : 'environment';
     const bake = `#/bake?${field}=${entry.id}`;
     return html`<article class="card" data-id=${entry.id}>
-        <img src=${entry.links.thumbnail} alt="" loading=${index < at_once ? null : 'lazy'} width="256"
+        <img src=${entry.links.thumbnail} alt="" loading=${index < eager_pictures ? null : 'lazy'} width="256"
             height=${entry.kind === 'model' ? 256 : 128} />
         <h3>${label}</h3>
         <${Names} kind=${entry.kind} paths=${paths} />
@@ -95,7 +95,7 @@ function Card({ entry, index, label, paths, files, on_change }) {
                 </p>
         <${ProblemNote} problem=${problem} />
         <details><summary>Facts</summary><${Facts} rows=${fact_rows(entry)} /></details>
-        <details><summary>Name it</summary>
+        <details><summary>Give a name</summary>
             <${NameForm} entry=${entry} suggestion=${paths?.[0] ?? name_from_file(files[entry.id] ?? '')}
                 on_named=${on_change} />
         </details>

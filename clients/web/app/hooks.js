@@ -1,12 +1,12 @@
-// What most pages need: the app's services, a document fetched once, one watched, a list with pages.
+// Hooks that several pages use: the services of the app, a document, a watched document, a list.
 import { createContext, useCallback, useContext, useEffect, useState } from '../vendor/preact.js';
-import { most_shown } from './words.js';
+import { all_pages } from './list_pages.js';
 
 /** { api, uploads, announce(text) } */
 export const AppContext = createContext(null);
 export const use_app = () => useContext(AppContext);
 
-/** { value, problem, reload } of a GET; nothing is asked while path is null. */
+/** Fetches `path` once; nothing while it is null. Returns { value, problem, reload() }. */
 export function use_json(path) {
     const { api } = use_app();
     const [state, set_state] = useState({});
@@ -24,7 +24,8 @@ export function use_json(path) {
 }
 
 /**
- * { value, problem } of a GET that is asked again every `every_ms` until `ended(value)`; another `round` begins anew.
+ * Fetches `path` every `every_ms` until `ended(value)` is true. Another `round` starts again.
+ * Returns { value, problem }.
  */
 export function use_watch(path, every_ms, ended = () => false, round = 0) {
     const { api } = use_app();
@@ -38,22 +39,7 @@ export function use_watch(path, every_ms, ended = () => false, round = 0) {
     return state;
 }
 
-// The most that the service gives at once, by what the list is of.
-const page_sizes = { bakes: 1000, names: 1000, models: 200, environments: 200 };
-
-/** { items, more } of a list that comes in pages: most_shown items or fewer, and whether there are more. */
-async function all_pages(api, path, key) {
-    const items = [];
-    const limit = page_sizes[key];
-    for (let cursor = '';;) {
-        const page = await api.json(path + (path.includes('?') ? '&' : '?') + `limit=${limit}${cursor}`);
-        items.push(...page[key]);
-        if (!page.next || items.length >= most_shown) return { items, more: Boolean(page.next) };
-        cursor = `&cursor=${encodeURIComponent(page.next)}`;
-    }
-}
-
-/** { items, more, problem, reload } of such a list. */
+/** A list of the service, see all_pages. Returns { items, more, problem, reload() }; items is null at first. */
 export function use_list(path, key) {
     const { api } = use_app();
     const [state, set_state] = useState({ items: null });

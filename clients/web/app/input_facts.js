@@ -1,7 +1,8 @@
-// The service's facts of a hair model or an environment as lines for people.
-import { bytes_words, count_words, number_words, short_digest } from './words.js';
+// The service's facts of a hair model or an environment as text.
+import { short_digest } from './name_text.js';
+import { bytes_text, count_text, number_text } from './number_text.js';
 
-const layout_words = {
+const layout_names = {
     latlong: 'lat-long',
     horizontal_cross: 'horizontal cross',
     vertical_cross: 'vertical cross',
@@ -10,21 +11,21 @@ const layout_words = {
     faces: 'six faces',
 };
 
-const vector_words = v => v.map(x => number_words(x, 3)).join(', ');
-const range_words = ({ minimum, maximum, default: one }) =>
+const vector_text = v => v.map(x => number_text(x, 3)).join(', ');
+const range_text = ({ minimum, maximum, default: one }) =>
     minimum === undefined
-        ? number_words(one)
+        ? number_text(one)
         : minimum === maximum
-          ? number_words(minimum)
-          : `${number_words(minimum)} to ${number_words(maximum)}`;
+          ? number_text(minimum)
+          : `${number_text(minimum)} to ${number_text(maximum)}`;
 
 /** One line below the thumbnail. */
 export function summary({ kind, facts, bytes }) {
-    const size = bytes_words(bytes);
+    const size = bytes_text(bytes);
     if (kind === 'model')
-        return `${count_words(facts.strands, 'strand')}, ${count_words(facts.vertices, 'vertex', 'vertices')}, ${size}`;
+        return `${count_text(facts.strands, 'strand')}, ${count_text(facts.vertices, 'vertex', 'vertices')}, ${size}`;
     const pixels = facts.face_size ? `${facts.face_size} x ${facts.face_size} x 6` : `${facts.width} x ${facts.height}`;
-    return `${pixels} ${layout_words[facts.layout] ?? facts.layout}, ${facts.format}, ${size}`;
+    return `${pixels} ${layout_names[facts.layout] ?? facts.layout}, ${facts.format}, ${size}`;
 }
 
 function environment_rows(facts) {
@@ -32,51 +33,51 @@ function environment_rows(facts) {
     return [
         [
             'Layout',
-            `${layout_words[facts.layout] ?? facts.layout}: guessed from the shape unless the bake says otherwise`,
+            `${layout_names[facts.layout] ?? facts.layout}: guessed from the shape unless the bake says otherwise`,
         ],
         ['Primaries', facts.primaries],
-        ['Mean radiance', vector_words(facts.mean_radiance)],
-        ['Brightest pixel', vector_words(bright.radiance)],
-        ['Direction to it', vector_words(bright.direction)],
-        ...(facts.small_lights ? [['Sun or small lamps', lights_words(facts.small_lights)]] : []),
+        ['Mean radiance', vector_text(facts.mean_radiance)],
+        ['Brightest pixel', vector_text(bright.radiance)],
+        ['Direction to it', vector_text(bright.direction)],
+        ...(facts.small_lights ? [['Sun or small lamps', small_lights_text(facts.small_lights)]] : []),
     ];
 }
 
-const lights_words = ({ pixels, share }) =>
-    `${count_words(pixels, 'pixel holds', 'pixels hold')} ${number_words(100 * share, 2)} % of the light`;
+const small_lights_text = ({ pixels, share }) =>
+    `${count_text(pixels, 'pixel holds', 'pixels hold')} ${number_text(100 * share, 2)} % of the light`;
 
 function model_rows(facts) {
     return [
         ['Format', facts.format],
-        ['Longest strand', count_words(facts.longest_strand, 'vertex', 'vertices')],
+        ['Longest strand', count_text(facts.longest_strand, 'vertex', 'vertices')],
         ...(facts.bounds
-            ? [['Bounds', `${vector_words(facts.bounds.minimum)} to ${vector_words(facts.bounds.maximum)}`]]
+            ? [['Bounds', `${vector_text(facts.bounds.minimum)} to ${vector_text(facts.bounds.maximum)}`]]
             : []),
-        ['Strand width', range_words(facts.thickness)],
-        ['Transparency', range_words(facts.transparency)],
-        ...(facts.info ? [['Its own words', facts.info]] : []),
+        ['Strand width', range_text(facts.thickness)],
+        ['Transparency', range_text(facts.transparency)],
+        ...(facts.info ? [['Info text of the file', facts.info]] : []),
     ];
 }
 
-/** [term, text] of everything that is worth reading. */
+/** [term, text] of each fact that the page shows. */
 export function fact_rows({ kind, facts, id }) {
     return [...(kind === 'model' ? model_rows(facts) : environment_rows(facts)), ['SHA-256', id]];
 }
 
-/** What a person should know before baking with it. */
+/** Warnings to read before baking with the input. */
 export function warnings({ kind, facts }) {
     const texts = [...(facts.warnings ?? [])];
     if (kind !== 'environment') return texts;
     const { negative = 0, nan = 0, infinite = 0 } = facts.invalid_pixels ?? {};
-    if (nan + infinite > 0) texts.push(`${count_words(nan + infinite, 'pixel')} infinite or not a number.`);
+    if (nan + infinite > 0) texts.push(`${count_text(nan + infinite, 'pixel')} infinite or not a number.`);
     if (negative + nan + infinite > 0) texts.push('A bake refuses such pixels unless its invalid radiance is "clamp".');
     if (facts.low_dynamic_range && !texts.some(text => text.includes('dynamic range')))
         texts.push('Its dynamic range is low: lamps are clipped.');
-    if (facts.small_lights) texts.push(`A sun or small lamps: ${lights_words(facts.small_lights)}.`);
+    if (facts.small_lights) texts.push(`A sun or small lamps: ${small_lights_text(facts.small_lights)}.`);
     return texts;
 }
 
-/** What people call an input: its names in the service, the file name that it had here, or the digest's beginning. */
+/** The label of an input: its names in the service, else its file name in this browser, else its digest's beginning. */
 export function label_of(id, names = {}, files = {}) {
     return names[id]?.join(', ') || files[id] || short_digest(id);
 }

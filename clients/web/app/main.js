@@ -1,6 +1,6 @@
-// The frame around every page: navigation, token form, announcements.
+// The application: navigation, the token form, the current page, announcements for screen readers.
 import { html, render, useEffect, useMemo, useRef, useState } from '../vendor/preact.js';
-import { make_api } from './api.js';
+import { Api } from './api.js';
 import { AppContext } from './hooks.js';
 import { ProblemNote } from './parts.js';
 import { page_of, read_route } from './routes.js';
@@ -32,10 +32,10 @@ function Navigation({ current }) {
     </header>`;
 }
 
-/** Routes of one key are one page: the viewer keeps its camera, edit and strands when it shows other bakes. */
+/** A page is kept while the key stays: the viewer keeps its camera, edit and strands when it shows other bakes. */
 const key_of = ({ path, query }) => JSON.stringify(path[0] === 'view' ? ['view'] : [path, query]);
 
-/** The focus goes to a new page's heading, so that a screen reader tells where one is. */
+/** Moves the focus to a new page's heading, so that a screen reader reads it. first: the page was opened directly. */
 function Page({ route, first }) {
     const page = page_of(route.path);
     const [state, set_state] = useState({});
@@ -75,15 +75,15 @@ function App() {
     const [locked, set_locked] = useState(false);
     const [message, set_message] = useState('');
     const app = useMemo(() => {
-        const api = make_api(() => set_locked(true));
+        const api = new Api(() => set_locked(true));
         const announce = text => set_message(text);
         return { api, announce, uploads: new Uploads(api, announce) };
     }, []);
     const unlock = () => {
         set_locked(false);
-        app.uploads.go_on();
+        app.uploads.resume();
     };
-    useEffect(() => app.uploads.go_on(), []);
+    useEffect(() => app.uploads.resume(), []);
     return html`<${AppContext.Provider} value=${app}>
         <a class="skip" href="#main" onClick=${skip}>Skip to the content</a>
         <${Navigation} current=${route.path[0] ?? 'environments'} />
@@ -97,7 +97,7 @@ function App() {
 }
 
 function skip(event) {
-    event.preventDefault(); // '#main' is no page
+    event.preventDefault(); // the router would look for a page '#main'
     document.querySelector('main h1')?.focus();
 }
 

@@ -1,4 +1,4 @@
-// The part of the address after '#' and the page that it stands for.
+// The router: the part of the address after '#' and the page that it names.
 
 /** "#/bake?model=x" -> { path: ['bake'], query: { model: 'x' } } */
 export function read_route(hash) {
@@ -16,7 +16,7 @@ export function read_route(hash) {
     };
 }
 
-// Pages are modules of their own, loaded when they are first shown.
+// Each page is a module, which is loaded when the page is first shown.
 const pages = {
     environments: { load: () => import('./pages/environments_page.js'), title: () => 'Environments' },
     models: { load: () => import('./pages/models_page.js'), title: () => 'Hair models' },

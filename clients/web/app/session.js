@@ -1,4 +1,5 @@
-// A token is exchanged for a cookie that scripts cannot read; the page keeps nothing of it but that there is one.
+// Signing in and out. The service exchanges a token for a cookie that scripts cannot read. The page stores only whether
+// there is a session.
 import { html, useState } from '../vendor/preact.js';
 import { use_app } from './hooks.js';
 import { ProblemNote } from './parts.js';
@@ -27,7 +28,7 @@ export function TokenForm({ on_open }) {
     };
     return html`<form class="narrow" onSubmit=${open}>
         <h1>A token is needed</h1>
-        <p>This service is not open to everybody. Who runs it makes tokens with <code>hairbaked token new</code>.</p>
+        <p>This service needs a token. Its operator makes tokens with <code>hairbaked token new</code>.</p>
         <label>Token <input type="password" name="token" autocomplete="current-password" required autofocus /></label>
         <${ProblemNote} problem=${problem} />
         <button type="submit">Open</button>
@@ -42,7 +43,7 @@ export function SignOut() {
         try {
             await api.remove('/v1/session');
         } catch (failure) {
-            if (failure.status !== 401) return set_problem(failure); // else it has ended already
+            if (failure.status !== 401) return set_problem(failure); // 401: the session has ended already
         }
         localStorage.removeItem(flag);
         forget_names();

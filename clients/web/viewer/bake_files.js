@@ -1,12 +1,12 @@
-// What the viewer needs of a bake: its request, and the files of the output `raw` as typed arrays. The bytes come from
-// a service that anyone may write to, so that every number is compared with the size of what it describes.
+// A bake as the viewer needs it: its request, and the files of the output `raw` as typed arrays. Anyone may write to
+// the service, so each number of a file is checked against the size of the array that it describes.
 
 import { request_by_names } from '../app/bake/by_names.js';
-import { from_half } from './half.js';
+import { from_half } from './half_float.js';
 
 const needed = ['strands.json', 'strands.bin', 'maps.json', 'maps.f16'];
 
-/** Something to say to the user; `request` is what to bake instead, if that would help. */
+/** A bake that cannot be shown. message: for the user; request: a request that would help, or null. */
 export class BakeProblem extends Error {
     constructor(message, request = null) {
         super(message);
@@ -15,12 +15,15 @@ export class BakeProblem extends Error {
 }
 
 /**
- * {id, names, model, environment, request, strands, maps} of a bake that is done; all but the last two as the service
- * tells. `known` are bakes loaded before: the same strands or maps (by digest) are not fetched again but are the same
- * object. `say` is told what is going on. Throws BakeProblem.
+ * Loads a finished bake: { id, names, model, environment, request, strands, maps }; all but the last two as the service
+ * sends them.
+ * known: bakes loaded before; strands or maps of the same digest are not fetched again but are the same objects;
+ * say(text): called with each step.
+ *
+ * Throws BakeProblem.
  */
 export async function load_bake(api, id, { known = [], signal, say = () => {} } = {}) {
-    say('Asking for the bake.');
+    say('Fetching the bake.');
     const view = await api.json(`/v1/bakes/${id}`, { signal });
     refuse_unfit(view);
     const digest = name => view.files.find(file => file.name === name).sha256;
@@ -34,7 +37,7 @@ export async function load_bake(api, id, { known = [], signal, say = () => {} } 
     };
     return {
         id,
-        names: view.names, // as which it was asked for
+        names: view.names,
         model: view.model,
         environment: view.environment,
         request: view.request,
@@ -55,8 +58,8 @@ function refuse_unfit(view) {
     const names = new Set(view.files.map(file => file.name));
     if (needed.some(name => !names.has(name)))
         throw new BakeProblem(
-            'This bake did not write the output "raw", which is what the viewer reads. Ask for the same bake with ' +
-                '"raw" among its outputs; what it computed already is computed again only to be written.',
+            'This bake did not write the output "raw", which the viewer reads. Ask for the same bake with ' +
+                '"raw" among its outputs. It is computed again.',
             { ...request_by_names(view), outputs: [...new Set([...view.request.outputs, 'raw'])] },
         );
 }
@@ -97,14 +100,17 @@ export function read_strands(page, buffer) {
     return strands;
 }
 
-/** {texels, face_size, count, scale, exponent, level}: count maps, the diffuse one first; level is about its mean. */
+/**
+ * { texels, face_size, count, scale, exponent, level }. count: number of maps, the diffuse one is first;
+ * level: mean of the diffuse map, to one digit.
+ */
 export function read_maps(page, buffer) {
     demand(page.content === 'hairbake irradiance maps', 'maps.json is no list of maps');
     const [count, faces, n] = page.shape;
     demand(faces === 6 && Number.isInteger(n) && n > 0 && n <= 4096, 'maps.json: the shape is not that of cube maps');
     demand(Number.isInteger(count) && count >= 3, 'maps.json: a diffuse and two specular maps are the least');
     demand(page.scale > 0 && page.exponent >= 0, 'maps.json: scale or exponent is out of range');
-    demand(buffer.byteLength === count * 6 * n * n * 8, 'maps.f16 does not have the size that maps.json tells');
+    demand(buffer.byteLength === count * 6 * n * n * 8, 'maps.f16 does not have the size that maps.json states');
     const texels = new Uint16Array(buffer),
         level = page.scale * mean_green(texels.subarray(0, 6 * n * n * 4));
     return { texels, face_size: n, count, scale: page.scale, exponent: page.exponent, level: one_digit(level) };
@@ -116,7 +122,7 @@ function mean_green(texels) {
     return sum / (texels.length / 4);
 }
 
-// 1 where there is no light.
+// 1 for a map without light.
 function one_digit(value) {
     return value > 0 && Number.isFinite(value) ? Number(value.toPrecision(1)) : 1;
 }
@@ -127,7 +133,7 @@ function named_array(page, buffer, name, Type, size) {
     const bytes = size * Type.BYTES_PER_ELEMENT;
     demand(
         entry.bytes === bytes && entry.offset % 8 === 0 && entry.offset + bytes <= buffer.byteLength,
-        `strands.bin does not hold ${name} as strands.json tells`,
+        `strands.bin does not hold ${name} as strands.json states`,
     );
     return new Type(buffer, entry.offset, size);
 }

@@ -1,24 +1,26 @@
-// A button that asks for a bake, follows it, and links to it when it is done.
+// A button that posts a request, watches the bake, and links to it when it is done.
+import { is_turned_away } from '../app/retry.js';
 import { html, useEffect, useState } from '../vendor/preact.js';
 
 const pause_ms = 700;
 const ended = ['done', 'failed', 'cancelled'];
 
 /**
- * `request` gives the request when the button is pressed; it may throw in words. `old` is the bake shown now.
- * `on_asked` is told the new one's id.
+ * request(): called when the button is pressed; an Error that it throws is shown;
+ * old: id of the bake shown now, if the new one can be compared with it;
+ * on_posted(id): called with the id of the new bake.
  */
-export function BakeOrder({ api, request, old, label, disabled = false, on_asked = () => {} }) {
+export function BakeOrder({ api, request, old, label, disabled = false, on_posted = () => {} }) {
     const [bake, set_bake] = useState(null);
     const [problem, set_problem] = useState('');
-    const [lost, set_lost] = useState(null); // why the last answer did not come
-    const ask = async () => {
+    const [lost, set_lost] = useState(null); // why the last answer is missing
+    const post = async () => {
         set_problem('');
         set_bake(null);
         set_lost(null);
         try {
             const view = await api.post('/v1/bakes', request());
-            on_asked(view.id);
+            on_posted(view.id);
             set_bake(view);
         } catch (error) {
             set_problem(`It was not baked: ${error.message}`);
@@ -31,17 +33,17 @@ export function BakeOrder({ api, request, old, label, disabled = false, on_asked
     const fail = error => {
         if (!is_refusal(error)) return set_lost(error);
         set_bake(null);
-        set_problem(`The new bake can be followed no longer: ${error.message}`);
+        set_problem(`The new bake can no longer be watched: ${error.message}`);
     };
     useEffect(() => follow(api, bake, take, fail), [bake, lost]);
     const waits = bake !== null && !ended.includes(bake.state);
     return html`<div>
-        <button type="button" disabled=${disabled || waits} aria-busy=${waits ? 'true' : 'false'} onClick=${ask}>
+        <button type="button" disabled=${disabled || waits} aria-busy=${waits ? 'true' : 'false'} onClick=${post}>
             ${label}
         </button>
         <p role="status" class="viewer-note">
             ${problem || html`<${Progress} bake=${bake} old=${old} />`}
-            ${lost && ` ${lost.message} It is asked again.`}
+            ${lost && ` ${lost.message} The request is repeated.`}
         </p>
     </div>`;
 }
@@ -54,12 +56,12 @@ function Progress({ bake, old }) {
         ${old && old !== bake.id && html` or <a href=${`#/view/${old}/${bake.id}`}>compare it with this one</a>`}.`;
 }
 
-// Asking again changes nothing; 408 and 429 are a proxy's haste.
+// Another try would fail too.
 function is_refusal({ status }) {
-    return status >= 400 && status < 500 && status !== 408 && status !== 429;
+    return status >= 400 && status < 500 && !is_turned_away(status);
 }
 
-// Asks again after a pause while the bake is on its way. Returns what stops it.
+// Fetches the bake again after a pause unless it has ended. Returns a function that stops that.
 function follow(api, bake, take, fail) {
     if (!bake || ended.includes(bake.state)) return;
     const abort = new AbortController();

@@ -1,4 +1,4 @@
-// The panels beside the picture. Each gets a value and tells of a new one by `on`.
+// The panels beside the picture: what is shown, hair, sky, lights. Each takes a value and calls `on` with a new one.
 import { html } from '../vendor/preact.js';
 import { Choice, Color, Slider, Tick } from './fields.js';
 import { most_lights } from './hair_shader.js';
@@ -17,7 +17,7 @@ const hiding = {
     average: 'A alone',
 };
 
-/** `sides`: one or two sides of hair_view.js; `names`: what to call each bake; `is_edited`: whether the lighting is. */
+/** sides: one or two of hair_view.js; names: label of each bake; is_edited: whether the lighting is edited. */
 export function SidesPanel({ sides, names, is_edited, on }) {
     const two = sides.length === 2;
     const split = !two ? 'one' : sides[1].bake === sides[0].bake ? 'same' : 'both';
@@ -99,7 +99,10 @@ export function SkyPanel({ edit, on }) {
     </fieldset>`;
 }
 
-/** `way`: what hides the lights; `ways`: which ways the bakes shown have; `level`: the sky's own diffuse light. */
+/**
+ * way: how the hair hides the lights; ways: the possible ones with the bakes shown;
+ * level: mean of the sky's diffuse map, the scale of the lights' irradiance.
+ */
 export function LightsPanel({ lights, level, way, ways, on, on_way }) {
     const change = (k, more) => on(lights.map((light, i) => (i === k ? { ...light, ...more } : light)));
     const options = Object.fromEntries(Object.entries(hiding).filter(([key]) => ways.includes(key)));

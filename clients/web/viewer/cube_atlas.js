@@ -1,10 +1,10 @@
 // Cube maps as one 2-D texture array: a layer is a map, its six faces are cells of 3 x 2, and every cell has a border
-// of one texel, so that the card's own bilinear filter goes on across a face's edge as core's sample_cube does.
+// of one texel, so that the card's bilinear filter crosses a face's edge as core's sample_cube does.
 //
-// WebGL 2 has no cube map arrays, a sampler cannot be chosen by a computed number, and three.js negates x in its cube
-// look-ups: hence no cube samplers. Faces are those of core/environment/cube_map.h.
+// Cube samplers do not do: WebGL 2 has no arrays of cube maps and cannot choose a sampler by a computed index, and
+// three.js negates x in cube look-ups. Faces are those of core/environment/cube_map.h.
 import { face_direction, texel_of } from '../app/result/cube.js';
-import { from_half, to_half } from './half.js';
+import { from_half, to_half } from './half_float.js';
 
 export const atlas_columns = 3,
     atlas_rows = 2;
@@ -35,7 +35,7 @@ export function cube_atlas(texels, n, maps) {
     return { data, width, height, layers: maps };
 }
 
-// The places around a face, {row, column, from}: what stands there is the mean of the texels `from`.
+// The texels of the border around a face: {row, column, from}. Each is the mean of the texels `from`.
 function border_of(n, face) {
     const border = [];
     for (let i = -1; i <= n; i++) {
@@ -45,7 +45,7 @@ function border_of(n, face) {
     return border.map(([row, column]) => ({ row, column, from: sources(n, face, row, column) }));
 }
 
-// (row, column) is one beyond the face: the neighbour across the edge, and beyond a corner the three texels that meet.
+// The sources of the border texel (row, column): the neighbour across the edge; at a corner the three texels that meet.
 function sources(n, face, row, column) {
     const r = Math.min(Math.max(row, 0), n - 1),
         c = Math.min(Math.max(column, 0), n - 1);

@@ -4,7 +4,7 @@ import { from_hex, to_hex } from './color.js';
 
 export function Slider({ label, value, min, max, step = 0.01, unit = '', on }) {
     const text = `${Number(value.toFixed(3))}${unit && ` ${unit}`}`;
-    // The number stands outside the label: an output inside would be what the label names.
+    // The number is outside the label: the label would name an output inside it instead of the slider.
     return html`<div class="viewer-slider">
         <label>
             <span>${label}</span>

@@ -1,11 +1,11 @@
-// A bake's arrays on the graphics card. The arrays in main memory are let go once they are there.
+// A bake's arrays on the graphics card. They leave main memory once they are uploaded.
 import * as THREE from '../vendor/three.js';
 import { cube_atlas } from './cube_atlas.js';
 
 /** Lines between neighbouring vertices of a strand; the attributes are those of hair_shader.js. */
 export function strand_geometry(strands) {
     const geometry = new THREE.BufferGeometry();
-    geometry.boundingSphere = new THREE.Sphere(); // else three.js reads the positions, which are gone by then
+    geometry.boundingSphere = new THREE.Sphere(); // else three.js would read the positions, which have left main memory
     geometry.setIndex(attribute(segments(strands.strand_begin), 1));
     geometry.setAttribute('position', attribute(strands.positions, 3));
     geometry.setAttribute('tangent_and_transmittance', halves(strands.tangent_and_transmittance, 4));
@@ -16,14 +16,18 @@ export function strand_geometry(strands) {
     return geometry;
 }
 
-/** Variants of the shader that these strands need. */
+/** The preprocessor definitions of the shader for these strands. */
 export function shader_defines(strands) {
     const count = strands.sh_bands ** 2,
         defines = { SH_COUNT: count, SH_VECTORS: Math.ceil(count / 4) };
     return strands.has_cone ? { ...defines, CONE: 1 } : defines;
 }
 
-/** All maps of a bake: layers of an array of atlases. Throws an Error in words when the card cannot hold them. */
+/**
+ * All maps of a bake as the layers of one texture of atlases.
+ *
+ * Throws an Error when the card cannot hold so many.
+ */
 export function map_texture(maps, renderer) {
     const gl = renderer.getContext(),
         most_layers = gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);
@@ -57,7 +61,7 @@ function segments(strand_begin) {
 }
 
 function attribute(array, size) {
-    return let_go(new THREE.BufferAttribute(array, size));
+    return freed_after_upload(new THREE.BufferAttribute(array, size));
 }
 
 function halves(array, size) {
@@ -66,10 +70,9 @@ function halves(array, size) {
     return made;
 }
 
-// `count` halves a vertex, as vectors of four; what is left over reads as 0, 0, 1, and the light's harmonics are 0
-// there.
+// `count` halves a vertex, as vectors of four. Missing components read as 0, 0, 1; the light's harmonics are 0 there.
 function add_harmonics(geometry, array, count) {
-    const buffer = let_go(new THREE.InterleavedBuffer(array, count));
+    const buffer = freed_after_upload(new THREE.InterleavedBuffer(array, count));
     buffer.isFloat16BufferAttribute = true;
     for (let first = 0; first < count; first += 4)
         geometry.setAttribute(
@@ -78,7 +81,7 @@ function add_harmonics(geometry, array, count) {
         );
 }
 
-function let_go(buffer) {
+function freed_after_upload(buffer) {
     return buffer.onUpload(function () {
         this.array = null;
     });

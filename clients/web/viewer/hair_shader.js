@@ -1,13 +1,13 @@
-// The run time of the method in GLSL: A(x) (Kd D(t) + Ks S(t, theta')) at every fragment of a strand.
+// The shader of the hair: A(x) (Kd D(t) + Ks S(t, theta')) at every fragment of a strand.
 import { atlas_columns, atlas_rows } from './cube_atlas.js';
 import { angle_polynomial, glsl_number, glsl_polynomial, sine_polynomial } from './shader_math.js';
 
 export const most_lights = 8;
 
-/** Which transmittance a light that was added meets. */
+/** The transmittance of an added light: the number that the shader takes for it. */
 export const hidden_by = { average: 0, harmonics: 1, cone: 2 };
 
-// `name` for each vec4 of the directional transmittance's harmonics.
+// The attributes of the directional transmittance's harmonics, a vec4 each.
 const sh_names = [0, 1, 2, 3].map(i => `sh${i}`);
 const each_sh = line => sh_names.map((name, i) => `#if SH_VECTORS > ${i}\n${line(name, i)}\n#endif`).join('\n');
 
@@ -44,7 +44,7 @@ ${each_sh(name => `    v_${name} = ${name};`)}
 `;
 
 const look_up = `
-// The place of a direction in the atlas: cube_atlas.js.
+// The texture coordinates of a direction in the atlas of cube_atlas.js.
 vec2 atlas_place(vec3 d) {
     vec3 m = abs(d);
     vec2 ab;
@@ -86,7 +86,7 @@ vec3 light_of_maps(vec3 tangent, vec3 to_eye) {
 
 const added_lights = `
 #ifdef CONE
-// T over directions that a bent cone stands for: BentCone in core/render/vertex_transmittance.cpp.
+// T of a bent cone in the light's direction: BentCone in core/render/vertex_transmittance.cpp.
 float seen_in_cone(float average, vec3 moment, vec3 light) {
     if (!(average > 0.0)) return 0.0;
     float first = length(moment), b = min(1.0, first / average);
@@ -131,7 +131,7 @@ vec3 light_of_added(vec3 tangent, vec3 to_eye, float average) {
 `;
 
 const display = `
-// Narkowicz's fit of the ACES film curve, then sRGB: what core/output/tone.cpp makes of a picture.
+// Narkowicz's fit of the ACES film curve, then sRGB, as in core/output/tone.cpp.
 vec3 shown(vec3 radiance) {
     vec3 x = max(radiance * u_display_gain, 0.0);
     vec3 film = clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
@@ -152,7 +152,7 @@ uniform bool u_apply_transmittance, u_show_transmittance;
 uniform int u_lights, u_hidden_by;
 uniform vec3 u_light_direction[${most_lights}], u_light_irradiance[${most_lights}];
 uniform vec4 u_light_harmonics[${4 * most_lights}];
-uniform bool u_linear;           // radiance as it is, for reading back
+uniform bool u_linear;           // no tone curve, for reading back
 uniform float u_display_gain;
 in vec3 v_position;
 in vec4 v_tangent_and_transmittance;

@@ -1,5 +1,5 @@
 // Draws one bake, or two side by side, on a canvas: WebGL 2, three.js LineSegments, the shader of hair_shader.js.
-// Nothing is drawn but on request; a request is one frame at the browser's next turn.
+// It draws only on request: a request is one frame at the browser's next animation frame.
 import * as THREE from '../vendor/three.js';
 import { map_texture, shader_defines, strand_geometry } from './gpu_data.js';
 import { fragment_shader, hidden_by, most_lights, vertex_shader } from './hair_shader.js';
@@ -9,15 +9,16 @@ import { harmonics } from './shader_math.js';
 
 export { most_lights };
 
-/** Light brown hair whose strands send on six tenths of the light diffusely: the defaults of `hairbake render`. */
+/** Light brown hair with an albedo of 0.6: the defaults of `hairbake render`. */
 export const default_look = { albedo: 0.6, color: [0.78, 0.52, 0.3], specular: 0.06 };
 
-/** The picture's brightness is chosen from -most_stops to most_stops: the sun in a picture of candles and back. */
+/** The brightness of the picture is within -most_stops to most_stops. */
 export const most_stops = 32;
 
 /**
- * What a side shows. `part`: all, diffuse, specular or transmittance; `hidden_by`: what hides lights that were added;
- * `as_baked`: without the edit.
+ * The settings of one side. bake: index of the bake; part: all, diffuse, specular or transmittance;
+ * with_transmittance: whether the light is multiplied by A; hidden_by: how the hair hides added lights;
+ * as_baked: whether the edit is left out.
  */
 export const default_side = {
     bake: 0,
@@ -39,7 +40,11 @@ export class HairView {
     #display_stops = 0;
     #request = 0;
 
-    /** `drawn` is called after each frame with the milliseconds it took. Throws when there is no WebGL 2. */
+    /**
+     * drawn(ms): called after each frame with its time.
+     *
+     * Throws without WebGL 2.
+     */
     constructor(canvas, { antialias = true, drawn = () => {} } = {}) {
         this.renderer = new THREE.WebGLRenderer({ canvas, antialias, alpha: true });
         this.renderer.autoClear = false;
@@ -49,7 +54,7 @@ export class HairView {
 
     // --- what is shown; every change asks for a frame ----------------------------------------------------------------
 
-    /** One or two bakes of load_bake(). What earlier ones alone used leaves the card; their arrays move to it. */
+    /** One or two bakes of load_bake(). Their arrays move to the card; those of earlier bakes are freed. */
     set_bakes(bakes) {
         const strands = new Set(bakes.map(bake => bake.strands)),
             maps = new Set(bakes.map(bake => bake.maps));
@@ -68,19 +73,19 @@ export class HairView {
         this.request_frame();
     }
 
-    /** Albedo in [0, 1] (Kd = albedo color / pi^2), linear RGB, Ks. */
+    /** { albedo in [0, 1], color: linear RGB, specular: Ks }; Kd = albedo color / pi^2. */
     set_look(look) {
         this.#look = look;
         this.request_frame();
     }
 
-    /** An edit as lighting_edit.js has it. */
+    /** An edit of lighting_edit.js. */
     set_lighting(edit) {
         this.#edit = edit;
         this.request_frame();
     }
 
-    /** Brightness of the picture on the screen alone. */
+    /** The brightness of the picture on the screen; it does not change the lighting. */
     set_display_stops(stops) {
         this.#display_stops = stops;
         this.request_frame();
@@ -92,7 +97,7 @@ export class HairView {
         this.request_frame();
     }
 
-    /** All of the hair in the picture. */
+    /** Moves the camera until all hair is in the picture. */
     frame_hair() {
         const size = this.renderer.getSize(new THREE.Vector2());
         if (this.#bakes.length) this.camera.frame(this.#bounds(), size.x / this.#sides.length / size.y);
@@ -108,7 +113,7 @@ export class HairView {
         });
     }
 
-    /** Draws now and waits for the card: the time is that of the whole frame. */
+    /** Draws now and waits for the card, so that the measured time is that of the whole frame. */
     draw() {
         if (!this.#bakes.length) return;
         const begin = performance.now(),
@@ -143,7 +148,7 @@ export class HairView {
         return new Promise(resolve => copy.toBlob(resolve, 'image/png'));
     }
 
-    /** Stops that bring the brightest tenth of the hair to a bright but unclipped tone (core/output/tone.h). */
+    /** The stops at which the brightest tenth of the hair is bright but not clipped (core/output/tone.h). */
     automatic_stops() {
         const pixels = this.linear_pixels(192, 144),
             luminances = [];
@@ -286,7 +291,7 @@ function set_lights(uniforms, lights, defines) {
     });
 }
 
-// The harmonics where the bake has them, else the bent cone, else A.
+// The shader's number for a wish; without that data the best that the bake has: harmonics, then bent cone, then A.
 function hiding(wish, defines) {
     const has = { harmonics: defines.SH_VECTORS > 0, cone: 'CONE' in defines, average: true };
     return hidden_by[has[wish] ? wish : ['harmonics', 'cone', 'average'].find(way => has[way])];

@@ -1,8 +1,9 @@
-// An edit of the lighting while it runs, and what it becomes in a request. Matrices are lists of rows.
+// An edit of the lighting in the viewer, and the request that bakes it. Matrices are lists of rows.
 //
 // A bake's lighting is  R0 (environment) 2^e0 tint0 + lights0;  the edit turns, exposes and tints all of that and adds
 // lights of its own. So the request that bakes the edit has the rotation R R0, the stops e0 + e, the tint tint0 tint,
 // the old lights turned, exposed and tinted, and the new ones.
+import { environment_settings_of, in_new_places } from '../app/bake/request_fields.js';
 
 /** `rotation_deg` and the lights are in the world frame; a light's azimuth 0 is +Z, 90 is +X, as the camera's. */
 export function no_edit() {
@@ -65,50 +66,65 @@ export function gain_of(edit) {
     return edit.tint.map(factor => factor * 2 ** edit.exposure_stops);
 }
 
+/** The lighting that a request gives, from either place of its fields: an edit's fields, lights as in the request. */
+function lighting_of(request) {
+    const { rotation_deg, exposure_stops, tint } = { ...no_edit(), ...environment_settings_of(request) };
+    return { rotation_deg, exposure_stops, tint, lights: request.irradiance?.lights ?? [] };
+}
+
+function edited_lights(old, edit) {
+    const rotation = rotation_matrix(edit.rotation_deg);
+    const gain = gain_of(edit);
+    return [
+        ...old.map(({ direction, irradiance }) => ({
+            direction: is_turned(edit) ? transform(rotation, direction).map(tidy) : direction,
+            irradiance: irradiance.map((channel, i) => tidy(channel * gain[i])),
+        })),
+        ...edit.lights.map(light => ({
+            direction: light_direction(light).map(tidy),
+            irradiance: light_irradiance(light).map(tidy),
+        })),
+    ];
+}
+
+const is_turned = edit => edit.rotation_deg.some(angle => angle % 360 !== 0);
+
 /**
- * The request that bakes `request`'s lighting as edited. Throws an Error in words where the service would refuse it.
+ * The request that bakes the lighting of `request` as edited; its fields stand in their new places. Throws an Error
+ * with a message where the service would refuse the request.
  */
 export function compose_request(request, edit) {
-    const before = { ...no_edit(), ...request.irradiance };
-    const turned = edit.rotation_deg.some(angle => angle % 360 !== 0);
-    const rotation = rotation_matrix(edit.rotation_deg),
-        gain = gain_of(edit);
-    const irradiance = {
-        ...request.irradiance,
-        rotation_deg: turned
-            ? rotation_degrees(multiply(rotation, rotation_matrix(before.rotation_deg)))
-            : before.rotation_deg,
+    const before = lighting_of(request);
+    const turned = multiply(rotation_matrix(edit.rotation_deg), rotation_matrix(before.rotation_deg));
+    const sky = {
+        rotation_deg: is_turned(edit) ? rotation_degrees(turned) : before.rotation_deg,
         exposure_stops: tidy(before.exposure_stops + edit.exposure_stops),
         tint: before.tint.map((factor, i) => tidy(factor * edit.tint[i])),
-        lights: [
-            ...before.lights.map(light => ({
-                direction: turned ? transform(rotation, light.direction).map(tidy) : light.direction,
-                irradiance: light.irradiance.map((channel, i) => tidy(channel * gain[i])),
-            })),
-            ...edit.lights.map(light => ({
-                direction: light_direction(light).map(tidy),
-                irradiance: light_irradiance(light).map(tidy),
-            })),
-        ],
     };
-    refuse_beyond_limits(irradiance);
-    return { ...request, irradiance };
+    const lights = edited_lights(before.lights, edit);
+    refuse_beyond_limits(sky, lights);
+    const moved = in_new_places(request);
+    return {
+        ...moved,
+        environment_settings: { ...moved.environment_settings, ...sky },
+        irradiance: { ...moved.irradiance, lights },
+    };
 }
 
 /** What a request does to its environment, for people: a list. */
-export function lighting_words(request) {
-    const { rotation_deg, exposure_stops, tint, lights } = { ...no_edit(), ...request.irradiance };
+export function lighting_text(request) {
+    const { rotation_deg, exposure_stops, tint, lights } = lighting_of(request);
     const [x, y, z] = rotation_deg.map(angle => `${Number(angle.toFixed(1))}°`);
-    const words = [];
-    if (rotation_deg[0] || rotation_deg[2]) words.push(`sky turned by ${x} ${y} ${z} about X Y Z`);
-    else if (rotation_deg[1]) words.push(`sky turned by ${y}`);
-    if (exposure_stops) words.push(`${exposure_stops > 0 ? '+' : ''}${Number(exposure_stops.toFixed(2))} stops`);
-    if (tint.some(factor => factor !== 1)) words.push('tinted');
-    if (lights.length) words.push(`${lights.length} ${lights.length === 1 ? 'light' : 'lights'} added`);
-    return words;
+    const texts = [];
+    if (rotation_deg[0] || rotation_deg[2]) texts.push(`sky turned by ${x} ${y} ${z} about X Y Z`);
+    else if (rotation_deg[1]) texts.push(`sky turned by ${y}`);
+    if (exposure_stops) texts.push(`${exposure_stops > 0 ? '+' : ''}${Number(exposure_stops.toFixed(2))} stops`);
+    if (tint.some(factor => factor !== 1)) texts.push('tinted');
+    if (lights.length) texts.push(`${lights.length} ${lights.length === 1 ? 'light' : 'lights'} added`);
+    return texts;
 }
 
-function refuse_beyond_limits({ exposure_stops, lights }) {
+function refuse_beyond_limits({ exposure_stops }, lights) {
     if (Math.abs(exposure_stops) > 64)
         throw new Error(`The exposure would be ${exposure_stops} stops in all; a bake takes -64 to 64.`);
     if (lights.length > 64) throw new Error(`There would be ${lights.length} lights in all; a bake takes at most 64.`);

@@ -1,4 +1,4 @@
-// A camera that looks at a target from around it: core/render/camera.h in JavaScript, with the moves of a user.
+// A camera that orbits a target: core/render/camera.h in JavaScript, with the moves of a user.
 
 const add = (a, b, factor = 1) => a.map((x, i) => x + factor * b[i]);
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -26,7 +26,7 @@ export class OrbitCamera {
         return add(this.target, this.axes().backward, this.distance);
     }
 
-    /** As near as all of the box [[low], [high]] is in the picture, with a small margin; the angles stay. */
+    /** Moves as near as the box [[low], [high]] fits the picture with a small margin; the angles stay. */
     frame([low, high], aspect) {
         const { right, up, backward } = this.axes(),
             tangent = this.tangent();
@@ -36,7 +36,7 @@ export class OrbitCamera {
             const sideways = Math.max(Math.abs(dot(from_target, right)) / aspect, Math.abs(dot(from_target, up)));
             return dot(from_target, backward) + (1.04 * sideways) / tangent;
         });
-        this.distance = Math.max(...needed) || 1; // a model of one point is seen from anywhere
+        this.distance = Math.max(...needed) || 1; // the box of a single point has no size
     }
 
     orbit(azimuth_deg, elevation_deg) {
@@ -48,7 +48,7 @@ export class OrbitCamera {
         this.distance *= factor;
     }
 
-    /** Moves what is in the middle, in heights of the picture. */
+    /** Moves the target sideways, by multiples of the picture's height. */
     pan(x, y) {
         const { right, up } = this.axes(),
             height = 2 * this.distance * this.tangent();
@@ -60,7 +60,7 @@ export class OrbitCamera {
         return Math.tan((this.fov_deg * Math.PI) / 360);
     }
 
-    /** Sets a three.js PerspectiveCamera; near and far hold the box. */
+    /** Sets a three.js PerspectiveCamera; its near and far planes enclose the box. */
     apply(camera, [low, high], aspect) {
         const { right, up, backward } = this.axes(),
             eye = this.eye();

@@ -1,10 +1,13 @@
-// Pointer, wheel and keys move the camera. One pointer orbits, with shift or the second button it moves; two pinch and
-// move.
+// Camera control by pointer, wheel and keys. One pointer orbits, or moves the target with shift or the second button.
+// Two pointers zoom and move.
 
-const degrees_a_height = 180; // of a drag over the whole picture's height
+const degrees_a_height = 180; // turn of a drag over the picture's height
 const step_deg = 5;
 
-/** Listens on `element`; calls `moved` after each change. Returns a function that stops listening. */
+/**
+ * Listens on `element`. moved(): called after each change; frame(): called by the key F.
+ * Returns a function that stops listening.
+ */
 export function listen_for_orbit(element, camera, moved, frame) {
     const pointers = new Map();
     const listeners = {
@@ -61,7 +64,7 @@ function pinch(camera, element, before, after) {
     camera.pan((to[0] - from[0]) / element.clientHeight, -(to[1] - from[1]) / element.clientHeight);
 }
 
-// Whether the key means something here.
+// Moves the camera by a key. Returns whether the key is one of the viewer's.
 function key(camera, { key: name, shiftKey: shift }, frame) {
     const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
     if (name in arrows) {

@@ -1,12 +1,12 @@
 // Mathematics that the shader and the page share.
 //
-// Built-in sin, cos and acos of software WebGL err by up to 4e-4, which 33 maps between 0 and pi make 4e-3 of the step
-// from map to map; polynomials and square roots are good to 3e-7.
+// The built-in sin, cos and acos of software WebGL have errors up to 4e-4. With 33 maps between 0 and pi that is 4e-3
+// of the step from map to map. Polynomials and square roots have errors of 3e-7.
 
 /**
  * Angle between unit vectors from q = |a - b|^2 in [0, 2]: sqrt(q) times this polynomial in q, lowest power first, is
- * 2 asin(sqrt(q) / 2) to 9e-8 (3.5e-7 in single precision). Fitted by weighted least squares to an even error. From the
- * difference and not from the dot product, because near 0 and pi rounding the latter by 6e-8 turns the angle by 3e-4.
+ * 2 asin(sqrt(q) / 2) to 9e-8 (3.5e-7 in single precision). Fitted by weighted least squares to an even error. The dot
+ * product would not do: near 0 and pi its rounding error of 6e-8 changes the angle by 3e-4.
  */
 export const angle_polynomial = [
     1.0000009, 0.0416509322, 0.0047664137, 0.000525499517, 0.000305898683, -8.10274692e-5, 2.88555483e-5,

@@ -1,4 +1,4 @@
-// Headless Chromium of the Debian package, which reports what a page must not do.
+// Headless Chromium of the Debian package, and pages that collect their faults.
 import { createRequire } from 'node:module';
 import { dirname, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -23,7 +23,7 @@ export const chromium_flags = [
 
 export const launch = () => chromium.launch({ executablePath: chromium_path, headless: true, args: chromium_flags });
 
-/** A page and the list of its faults: errors in scripts, what the policy refused, requests to elsewhere. */
+/** A page and the list of its faults: errors of scripts, violations of the policy, requests to other origins. */
 export async function open_page(browser, origin, options = {}) {
     const context = await browser.newContext({
         viewport: { width: 1280, height: 720 },
@@ -38,7 +38,8 @@ export async function open_page(browser, origin, options = {}) {
     });
     context.on('request', request => {
         const url = new URL(request.url());
-        if (url.protocol.startsWith('http') && url.origin !== origin) faults.push(`asked elsewhere: ${request.url()}`);
+        if (url.protocol.startsWith('http') && url.origin !== origin)
+            faults.push(`request to another origin: ${request.url()}`);
     });
     return { context, page, faults };
 }

@@ -1,4 +1,4 @@
-// The real daemon with the real page, in a folder of its own, on a free port of 127.0.0.1.
+// The real daemon with the real page, in its own folder, on a free port of 127.0.0.1.
 import { spawn, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -30,7 +30,7 @@ function token_table(token) {
 }
 
 export class Daemon {
-    /** With a token, the daemon demands it, and what is asked here has it. */
+    /** token: the daemon demands it, and the requests of this class send it. */
     static async start({ token = '' } = {}) {
         const daemon = new Daemon();
         daemon.headers = token ? { Authorization: `Bearer ${token}` } : {};

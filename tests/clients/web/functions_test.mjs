@@ -1,20 +1,11 @@
-// The page's pure functions, in node.
+// The page's pure functions about pictures, texts and addresses, in node.
 import assert from 'node:assert/strict';
-import { readFileSync, readdirSync } from 'node:fs';
 import { test } from 'node:test';
-import { request_by_names } from '../../../clients/web/app/bake/by_names.js';
-import {
-    build_request,
-    differences,
-    first_values,
-    merged,
-    names_of,
-    reference_to,
-    with_value,
-} from '../../../clients/web/app/bake/request.js';
-import { defaults_of, faults, fields_of, range_words } from '../../../clients/web/app/bake/schema.js';
-import { names_by_digest, versions_by_path, warnings } from '../../../clients/web/app/input_facts.js';
-import { wait_ms_of } from '../../../clients/web/app/patience.js';
+import { phase_text, stage_counts_text, stage_title } from '../../../clients/web/app/bake/stage_text.js';
+import { warnings } from '../../../clients/web/app/input_facts.js';
+import { name_from_file, title_text } from '../../../clients/web/app/name_text.js';
+import { bytes_text, number_text } from '../../../clients/web/app/number_text.js';
+import { accuracy_rows } from '../../../clients/web/app/result/accuracy.js';
 import {
     face_direction,
     latlong_direction,
@@ -23,14 +14,11 @@ import {
     texel_direction,
     texel_of,
 } from '../../../clients/web/app/result/cube.js';
-import { half_values } from '../../../clients/web/app/result/half.js';
 import { srgb_byte } from '../../../clients/web/app/result/map_set.js';
+import { wait_ms_of } from '../../../clients/web/app/retry.js';
 import { read_route } from '../../../clients/web/app/routes.js';
-import { from_half } from '../../../clients/web/viewer/half.js';
-import { bytes_words, name_from_file, number_words, seconds_words } from '../../../clients/web/app/words.js';
-
-const config = new URL('../../../config/', import.meta.url);
-const schema = JSON.parse(readFileSync(new URL('request.schema.json', config)));
+import { duration_text } from '../../../clients/web/app/time_text.js';
+import { from_half, half_values } from '../../../clients/web/viewer/half_float.js';
 
 test('half floats mean what IEEE 754 says', () => {
     // sign, five bits of exponent (bias 15), ten of fraction
@@ -107,63 +95,6 @@ test('sRGB bytes are those of IEC 61966-2-1', () => {
         assert.equal(srgb_byte(value), byte);
 });
 
-test('every field of the schema has a help text, and what is a number has a range', () => {
-    const fields = fields_of(schema);
-    assert.ok(fields.length > 30);
-    for (const { path, schema: field } of fields) {
-        assert.ok(field.description?.length > 5, path.join('.'));
-        if (field.type === 'number' || field.type === 'integer' || field.anyOf)
-            assert.match(range_words(field), /^(more than )?[-\d.e+]+,? (up )?to /, path.join('.'));
-    }
-});
-
-test('the defaults follow the schema, and a request of defaults names files and outputs alone', () => {
-    const values = { ...first_values(schema), hair: 'sha256:aa' };
-    assert.deepEqual(faults(schema, defaults_of(schema)), []);
-    assert.deepEqual(build_request(schema, values), { hair: 'sha256:aa', outputs: ['npy', 'exr', 'hair', 'raw'] });
-});
-
-test('a preset and a change make a request of what differs', () => {
-    const draft = JSON.parse(readFileSync(new URL('presets/draft.json', config))).request;
-    const base = merged(first_values(schema), draft);
-    const values = with_value(base, ['irradiance', 'rotation_deg'], [0, 90, 0]);
-    assert.deepEqual(build_request(schema, values), {
-        transmittance: { directions: 32, voxels: 128, reference_vertices: 64 },
-        irradiance: { face_size: 8, specular_maps: 17, rotation_deg: [0, 90, 0] },
-        outputs: ['npy', 'exr', 'hair', 'raw'],
-    });
-    assert.deepEqual(differences(schema, values, base), ['irradiance.rotation_deg']);
-    for (const name of readdirSync(new URL('presets/', config)))
-        assert.deepEqual(
-            faults(schema, JSON.parse(readFileSync(new URL(`presets/${name}`, config))).request),
-            [],
-            name,
-        );
-});
-
-test('what the schema does not allow is named by field, with what is allowed', () => {
-    const wrong = request => faults(schema, request).map(({ path, words }) => `${path} ${words}`);
-    assert.deepEqual(wrong({ irradiance: { face_size: 3 } }), [
-        'irradiance.face_size is 3; allowed is 4 to 256, whole',
-    ]);
-    assert.deepEqual(wrong({ irradiance: { face_size: 4.5 } }), [
-        'irradiance.face_size is 4.5; allowed is 4 to 256, whole',
-    ]);
-    assert.deepEqual(wrong({ transmittance: { directions: null } }), [
-        'transmittance.directions is empty; allowed is 1 to 4096, whole',
-    ]);
-    assert.deepEqual(wrong({ strand: { width: 0 } }), ['strand.width is 0; allowed is more than 0, up to 1e18']);
-    assert.deepEqual(wrong({ strand: { opacity: 'from_file', width: null } }), []);
-    assert.deepEqual(wrong({ strand: { opacity: 2 } }), ['strand.opacity is 2; allowed is 0 to 1, or from_file']);
-    assert.deepEqual(wrong({ irradiance: { tint: [1, 2, -1] } }), ['irradiance.tint.2 is -1; allowed is 0 to 1000000']);
-    assert.deepEqual(wrong({ irradiance: { tint: [1] } }), ['irradiance.tint has 1 entries; allowed are 3 to 3']);
-    assert.deepEqual(wrong({ irradiance: { lights: [{ direction: [0, 1, 0] }] } }), [
-        'irradiance.lights.0.irradiance is missing',
-    ]);
-    assert.deepEqual(wrong({ outputs: ['npy', 'npy'] }), ['outputs holds something twice']);
-    assert.deepEqual(wrong({ colour: 1, toString: 2 }), ['colour is not a field', 'toString is not a field']);
-});
-
 test('warnings tell of pixels that a bake refuses and of a low range', () => {
     const facts = { invalid_pixels: { negative: 3, nan: 1, infinite: 0 }, low_dynamic_range: true, warnings: ['x'] };
     assert.deepEqual(warnings({ kind: 'environment', facts }), [
@@ -179,16 +110,16 @@ test('warnings tell of pixels that a bake refuses and of a low range', () => {
 });
 
 test('numbers, sizes, times and names read well', () => {
-    assert.deepEqual([0, 999, 1500, 24100128, 999.6e6].map(bytes_words), [
+    assert.deepEqual([0, 999, 1500, 24100128, 999.6e6].map(bytes_text), [
         '0 bytes',
         '999 bytes',
         '1.5 kB',
         '24 MB',
         '1.0 GB',
     ]);
-    assert.deepEqual([0.1234, 5.04, 62, 600, 7200].map(seconds_words), ['123 ms', '5.0 s', '62 s', '10 min', '2.0 h']);
+    assert.deepEqual([0.1234, 5.04, 62, 600, 7200].map(duration_text), ['123 ms', '5.0 s', '62 s', '10 min', '2.0 h']);
     assert.deepEqual(
-        [0, 0.00001234, 3.14159, 123456, 1e9].map(x => number_words(x)),
+        [0, 0.00001234, 3.14159, 123456, 1e9].map(x => number_text(x)),
         ['0', '1.234e-5', '3.142', '123500', '1.000e+9'],
     );
     assert.equal(name_from_file('../My <sky> (1k).hdr'), 'My-sky-1k');
@@ -201,29 +132,6 @@ test('addresses are taken apart, broken ones too', () => {
     assert.deepEqual(read_route(''), { path: [], query: {} });
 });
 
-test('a request asks by the first name of a file in its version, by the chosen one, or by digest', () => {
-    const list = [
-        { path: 'stage/dawn', sha256: 'abc', version: 3 },
-        { path: 'stage/dusk', sha256: 'abc', version: 1 },
-    ];
-    const inputs = { names: names_by_digest(list), versions: versions_by_path(list) };
-    assert.deepEqual(names_of('abc', inputs), ['name:stage/dawn@3', 'name:stage/dusk@1']);
-    assert.deepEqual(names_of('def', inputs), []);
-    assert.equal(reference_to({ id: '' }, inputs), null);
-    assert.equal(reference_to({ id: 'abc' }, inputs), 'name:stage/dawn@3');
-    assert.equal(reference_to({ id: 'abc', by: 'name:stage/dusk@1' }, inputs), 'name:stage/dusk@1');
-    assert.equal(reference_to({ id: 'abc', by: 'name:gone@1' }, inputs), 'name:stage/dawn@3');
-    assert.equal(reference_to({ id: 'abc', by: '' }, inputs), 'sha256:abc');
-    assert.equal(reference_to({ id: 'def' }, inputs), 'sha256:def');
-});
-
-test('the request of a bake names what it was asked by, in the version that it had', () => {
-    const request = { hair: 'sha256:a', environment: 'sha256:b', occluder: null, outputs: ['raw'] };
-    const names = { environment: { path: 'stage/dawn', version: 2 } };
-    assert.deepEqual(request_by_names({ request, names }), { ...request, environment: 'name:stage/dawn@2' });
-    assert.deepEqual(request_by_names({ request, names: {} }), request);
-});
-
 test('Retry-After is read in seconds and as a date, and no wait is longer than two minutes', () => {
     assert.deepEqual([null, '', 'soon', '0', '-5'].map(wait_ms_of), [0, 0, 0, 0, 0]);
     assert.equal(wait_ms_of('60'), 60_000);
@@ -231,4 +139,60 @@ test('Retry-After is read in seconds and as a date, and no wait is longer than t
     const wait = wait_ms_of(new Date(Date.now() + 30_000).toUTCString()); // in whole seconds
     assert.ok(wait > 20_000 && wait <= 30_000, `${wait} ms`);
     assert.equal(wait_ms_of('Wed, 21 Oct 2015 07:28:00 GMT'), 0);
+});
+
+test('names of fields become titles', () => {
+    assert.deepEqual(
+        ['face_size', 'sh_bands', 'rotation_deg', 'kajiya_kay', 'environment_settings'].map(title_text),
+        ['Face size', 'SH bands', 'Rotation', 'Kajiya-Kay', 'Environment settings'],
+    );
+});
+
+test('the accuracy of a result names every error that its manifest states', () => {
+    const bar = { rmse: 0.01234, bias: -0.002, ci95: { rmse: [0.01, 0.015], bias: [-0.003, -0.001] } };
+    assert.deepEqual(accuracy_rows({ error_bar: { ...bar, vertices: 256, directions: 1 } }), [
+        ['A against traced strands, RMSE', '0.0123 (95 %: 0.01 to 0.015)'],
+        ['Bias', '-0.002 (95 %: -0.003 to -0.001)'],
+        ['Measured with', '256 vertices, 1 direction each'],
+    ]);
+    assert.deepEqual(accuracy_rows({ error_bar: { vertices: 0 } }), [
+        ['A against traced strands', 'not measured: every vertex drawn lies inside another strand'],
+    ]);
+    // As core/output/manifest.cpp writes it for the methods exact and sh.
+    const exact = { face_size: 16, interpolation_bound_relative: 0.0042, environment_sh_bands: 8 };
+    const bound = ['Between specular maps, at most', '0.42 % of the largest value'];
+    assert.deepEqual(accuracy_rows({ error_bar: null, irradiance: exact }), [bound]);
+    const sh = {
+        ...exact,
+        sh_bands: { diffuse: 3, specular: 18 },
+        predicted_error: { diffuse: 0.00123, specular: 0.0095 },
+    };
+    assert.deepEqual(accuracy_rows({ error_bar: null, irradiance: sh }), [
+        bound,
+        ['SH bands', 'diffuse 3, specular 18'],
+        ['Predicted SH error of the diffuse map, RMS', '0.123 % of the largest value'],
+        ['Predicted SH error of the specular maps, RMS', '0.95 % of the largest value'],
+    ]);
+    assert.deepEqual(accuracy_rows({ error_bar: null }), []);
+});
+
+test('any number of stages is shown, also one that the page has no text for', () => {
+    assert.equal(
+        stage_counts_text({ transmittance: 1, irradiance: 2, guide_hairs: 3 }),
+        '1 transmittance, 2 sets of irradiance maps, 3 guide_hairs',
+    );
+    assert.equal(stage_counts_text({ irradiance: 0 }), '0 sets of irradiance maps');
+    assert.deepEqual(
+        ['transmittance', 'irradiance', 'guide_hairs', 'toString'].map(stage_title),
+        ['Transmittance', 'Irradiance maps', 'Guide hairs', 'ToString'],
+    );
+    assert.deepEqual(
+        [
+            { state: 'running', phase: 'read_hair' },
+            { state: 'running' },
+            { state: 'queued' },
+            { state: 'done', phase: 'write' },
+        ].map(phase_text),
+        ['Read hair', 'starting', 'queued', 'done'],
+    );
 });

@@ -1,12 +1,12 @@
-// The whole way of an artist through the page, against the real daemon: from a file to hair in its light and back.
-// Pictures of every page go to the folder HAIRBAKE_SCREENSHOTS.
+// An artist's way through the whole page, with the real daemon: upload, bake, result, viewer, re-bake. Pictures of
+// every page are written to the folder HAIRBAKE_SCREENSHOTS.
 import assert from 'node:assert/strict';
 import { createHash } from 'node:crypto';
 import { existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { basename, join, resolve } from 'node:path';
 import { after, before, test } from 'node:test';
-import { from_half } from '../../../clients/web/viewer/half.js';
+import { from_half } from '../../../clients/web/viewer/half_float.js';
 import { launch, open_page, tests } from './browser.mjs';
 import { Daemon, hairbake, patience_ms } from './daemon.mjs';
 
@@ -38,7 +38,7 @@ const forms = [
     ['zoom_200', { width: 640, height: 360 }, 'light', 2], // what 200 % of 1280x720 leaves
 ];
 
-/** The page as it is, in every form; none of them may need scrolling to the side (WCAG 1.4.10 is about 320 pixels). */
+/** Pictures of the page in every form. None may scroll sideways (WCAG 1.4.10 asks that down to 320 pixels). */
 async function keep_pictures(name) {
     for (const [form, size, colorScheme] of forms) {
         await page.setViewportSize(size);
@@ -66,7 +66,7 @@ async function wait_until_done() {
     return daemon.json(`/v1/bakes/${bake_of_page()}`);
 }
 
-/** A map that somebody photographed, where there is one; the generated sky elsewhere. */
+/** A photographed map if one is installed, else the generated sky. */
 function a_real_map() {
     const found = existsSync(real_maps)
         ? readdirSync(real_maps)
@@ -93,7 +93,7 @@ test('environments and a model are sent and shown with their facts', async () =>
     await page.locator('.drop-zone input[type=file]').setInputFiles(join(sample, 'head.obj'));
     await page.getByRole('textbox', { name: 'Name' }).fill('heads/sample');
     await keep_pictures('mesh_to_name');
-    await page.getByRole('button', { name: 'Put the name here' }).click();
+    await page.getByRole('button', { name: 'Give this name' }).click();
     await page.getByRole('link', { name: 'heads/sample' }).waitFor();
     await keep_pictures('meshes');
     await page.getByRole('link', { name: 'heads/sample' }).click();
@@ -101,7 +101,7 @@ test('environments and a model are sent and shown with their facts', async () =>
     await keep_pictures('name');
 });
 
-test('a bake is asked for in the form and watched to its end', async () => {
+test('the form posts a bake, which is watched to its end', async () => {
     await page.getByRole('link', { name: 'New bake' }).click();
     await page.getByRole('radio', { name: /groom.hair/ }).check();
     await page.getByRole('radio', { name: new RegExp(basename(a_real_map())) }).check();
@@ -142,9 +142,9 @@ test('the result shows maps, the value under the pointer, histogram and error ba
         assert.ok(Math.abs(read[i] - expected[i]) <= 1e-4 * expected[i], `${read}, not ${expected}`); // five digits
 
     const manifest = await daemon.json(`/v1/bakes/${first_bake}/files/manifest.json`);
-    await page.locator('.histogram').scrollIntoViewIfNeeded(); // it is fetched when it is seen
+    await page.locator('.histogram').scrollIntoViewIfNeeded(); // it is fetched when it is near the visible part
     const term = page.locator('.facts div', { hasText: 'Mean of A' }).locator('dd');
-    // Half floats have 11 bits: each A is off by at most 2^-12 of itself, the mean not by more.
+    // Half floats have 11 bits: the relative error of each A is at most 2^-12, and that of the mean too.
     assert.ok(
         Math.abs(Number(await term.innerText()) - manifest.transmittance.mean) < 1e-3 * manifest.transmittance.mean,
     );
@@ -159,7 +159,7 @@ test('the result shows maps, the value under the pointer, histogram and error ba
     await keep_pictures('result_specular');
 });
 
-test('a downloaded file has the digest that the service tells', async () => {
+test('a downloaded file has the digest that the service states', async () => {
     const [download] = await Promise.all([
         page.waitForEvent('download'),
         page.getByRole('link', { name: 'transmittance.npy' }).click(),
@@ -187,7 +187,7 @@ test('the viewer turns the sky, and its light is baked', async () => {
     await page.getByRole('link', { name: 'open the new bake' }).waitFor();
     const { bakes } = await daemon.json('/v1/bakes?state=done');
     const turned = await daemon.json(`/v1/bakes/${bakes[0].id}`);
-    assert.deepEqual(turned.request.irradiance.rotation_deg, [0, 30, 0]);
+    assert.deepEqual(turned.request.environment_settings.rotation_deg, [0, 30, 0]);
     const fetched = [];
     page.on('request', request => fetched.push(basename(new URL(request.url()).pathname)));
     await page.getByRole('link', { name: 'compare it with this one' }).click();
@@ -200,7 +200,7 @@ test('the viewer turns the sky, and its light is baked', async () => {
     await page.screenshot({ path: join(screenshots, 'viewer_split.png') });
 });
 
-test('a set of bakes is baked again under another sky: the hair is not looked at again', async () => {
+test('a set of bakes is baked again under another sky: its transmittance is reused', async () => {
     await page.getByRole('link', { name: 'Bakes', exact: true }).click();
     await page.locator('tbody tr').nth(1).waitFor();
     for (const box of await page.getByRole('checkbox').all()) await box.check();
@@ -210,7 +210,7 @@ test('a set of bakes is baked again under another sky: the hair is not looked at
         .or(page.getByRole('button', { name: /Re-bake 2 bakes/ }))
         .click();
     await page.getByRole('radio', { name: /studio.hdr/ }).check();
-    // Both bakes are of one groom with one set of settings: one transmittance. Their skies are turned otherwise: two.
+    // Both bakes have one groom and one set of settings: one transmittance. Their rotations differ: two sets of maps.
     await page.locator('#forecast').waitFor();
     assert.match(
         await page.locator('#forecast').innerText(),
@@ -228,8 +228,8 @@ test('directional transmittance and bent cones of a real bake hide an added ligh
     const transmittance = { ...request.transmittance, sh_bands: 3, bent_cone: true };
     const { id } = await daemon.post('/v1/bakes', { ...request, transmittance });
     await daemon.finished(id);
-    const said = [];
-    page.on('console', message => message.type() === 'error' && said.push(message.text()));
+    const errors = [];
+    page.on('console', message => message.type() === 'error' && errors.push(message.text()));
     await page.goto(`${daemon.address}/#/view/${id}`);
     await page.getByText(/Frame time: [0-9.]+ ms/).waitFor();
     await page.getByRole('slider', { name: 'Exposure' }).fill('-6'); // the light alone, nearly
@@ -244,9 +244,9 @@ test('directional transmittance and bent cones of a real bake hide an added ligh
         await page.screenshot({ path: join(screenshots, `viewer_light_${ways.indexOf(way)}.png`) });
     }
     assert.equal(pictures.size, ways.length, 'two ways look alike');
-    assert.deepEqual(said, []);
+    assert.deepEqual(errors, []);
 });
 
-test('the page broke no rule on the way', () => {
+test('the page caused no fault on the way', () => {
     assert.deepEqual(faults, []);
 });

@@ -1,5 +1,5 @@
-// Lighthouse's judgement of performance and accessibility, through nginx, with its settings for desktops: a page for
-// 1280x720 and tablets, and its settings for phones slow the processor of the machine that runs the test down fourfold.
+// Lighthouse's scores of performance and accessibility, through nginx, with its desktop settings: the page is for
+// 1280x720 and tablets. Its settings for phones would slow the processor of the test's machine down fourfold.
 import assert from 'node:assert/strict';
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -16,7 +16,7 @@ const { default: lighthouse, desktopConfig } = await import(pathToFileURL(entry)
 
 const token = 'a-token-of-this-test';
 const least = 0.9;
-const tries = 3; // what else the machine does can only make a page slower: the best of three counts
+const tries = 3; // other load can only lower the score, so the best of three counts
 
 let daemon, nginx, browser, port, sample, bake;
 
@@ -56,7 +56,7 @@ async function scores(url) {
     const { lhr } = await lighthouse(url, { ...settings, extraHeaders: daemon.headers }, desktopConfig);
     assert.equal(lhr.runtimeError, undefined);
     const asked = lhr.audits['network-requests'].details.items.filter(({ url: one }) => one.includes('/v1/'));
-    assert.ok(asked.length > 0 && asked.every(({ statusCode }) => statusCode < 400), 'it is the page that is judged');
+    assert.ok(asked.length > 0 && asked.every(({ statusCode }) => statusCode < 400), 'the page itself is scored');
     const low = Object.values(lhr.audits)
         .filter(({ score }) => score !== null && score < least)
         .map(({ id, displayValue = '' }) => `${id} ${displayValue}`);

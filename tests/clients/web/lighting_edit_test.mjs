@@ -1,10 +1,11 @@
 // The arithmetic behind the viewer: rotations and requests, polynomials, half floats. No browser.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { from_half, to_half } from '../../../clients/web/viewer/half.js';
+import { EditOrders, arrange } from '../../../clients/web/viewer/edit_orders.js';
+import { from_half, to_half } from '../../../clients/web/viewer/half_float.js';
 import {
     compose_request,
-    lighting_words,
+    lighting_text,
     multiply,
     no_edit,
     rotation_degrees,
@@ -62,24 +63,29 @@ test('An edit is applied to all that was baked: rotations in order, factors mult
         hair: 'sha256:a',
         environment: 'sha256:b',
         outputs: ['raw'],
-        irradiance: {
-            face_size: 16,
+        environment_settings: {
+            layout: 'latlong',
             rotation_deg: [70, 20, -40],
             exposure_stops: -3,
             tint: [1, 0.5, 0.25],
+        },
+        irradiance: {
+            face_size: 16,
             lights: [{ direction: [0, 1, 0], irradiance: [1, 2, 3] }],
         },
     };
-    const { irradiance, ...rest } = compose_request(request, edit);
+    const { irradiance, environment_settings, ...rest } = compose_request(request, edit);
     assert.deepEqual(rest, { hair: 'sha256:a', environment: 'sha256:b', outputs: ['raw'] });
     assert.equal(irradiance.face_size, 16);
-    assert.equal(irradiance.exposure_stops, -2);
-    assert.deepEqual(irradiance.tint, [0.5, 0.5, 0.75]);
+    assert.deepEqual(Object.keys(irradiance).sort(), ['face_size', 'lights']);
+    assert.equal(environment_settings.layout, 'latlong');
+    assert.equal(environment_settings.exposure_stops, -2);
+    assert.deepEqual(environment_settings.tint, [0.5, 0.5, 0.75]);
     const twice = multiply(rotation_matrix(edit.rotation_deg), rotation_matrix([70, 20, -40]));
-    assert_near(rotation_matrix(irradiance.rotation_deg), twice, 1e-10, 'the rotation');
+    assert_near(rotation_matrix(environment_settings.rotation_deg), twice, 1e-10, 'the rotation');
     const v = [0.3, -0.7, 0.2];
     assert_near(
-        transform(rotation_matrix(irradiance.rotation_deg), v),
+        transform(rotation_matrix(environment_settings.rotation_deg), v),
         reference.turn(reference.turn(v, [70, 20, -40]), edit.rotation_deg),
         1e-10,
         'the old rotation, then the edit',
@@ -94,24 +100,34 @@ test('Without an edit the request stays as it is, to the last digit of its angle
     const request = {
         environment: 'sha256:b',
         outputs: ['raw'],
-        irradiance: {
-            rotation_deg: [400, 0.1, -190],
-            exposure_stops: 0.3,
-            tint: [1, 2, 3],
-            lights: [{ direction: [3, 4, 0], irradiance: [1, 1, 1] }],
-        },
+        environment_settings: { rotation_deg: [400, 0.1, -190], exposure_stops: 0.3, tint: [1, 2, 3] },
+        irradiance: { lights: [{ direction: [3, 4, 0], irradiance: [1, 1, 1] }] },
     };
     assert.deepEqual(compose_request(request, no_edit()), request);
 });
 
+test("An edit of an older bake is written to the new places, and the older bake's fields are moved there", () => {
+    const old = {
+        environment: 'sha256:b',
+        irradiance: { exponent: 20, face_size: 8, rotation_deg: [0, 30, 0], exposure_stops: 1, layout: 'latlong' },
+    };
+    const edit = { ...no_edit(), rotation_deg: [0, 60, 0], exposure_stops: 0.5 };
+    assert.deepEqual(compose_request(old, edit), {
+        environment: 'sha256:b',
+        fiber: { kajiya_kay: { exponent: 20 } },
+        environment_settings: { layout: 'latlong', rotation_deg: [0, 90, 0], exposure_stops: 1.5, tint: [1, 1, 1] },
+        irradiance: { face_size: 8, lights: [] },
+    });
+});
+
 test('An edit that no bake would take is refused in words', () => {
-    const bright = { irradiance: { ...no_edit(), exposure_stops: 60 } };
+    const bright = { environment_settings: { exposure_stops: 60 } };
     assert.throws(
         () => compose_request(bright, { ...no_edit(), exposure_stops: 6 }),
         /66 stops in all; a bake takes -64 to 64/,
     );
     const light = { direction: [0, 1, 0], irradiance: [1, 1, 1] };
-    const many = { irradiance: { ...no_edit(), lights: Array(64).fill(light) } };
+    const many = { irradiance: { lights: Array(64).fill(light) } };
     const one_more = { ...no_edit(), lights: [{ azimuth_deg: 0, elevation_deg: 0, irradiance: 1, color: [1, 1, 1] }] };
     assert.throws(() => compose_request(many, one_more), /65 lights in all; a bake takes at most 64/);
 });
@@ -157,17 +173,41 @@ test('Every half float survives being read and written, and what lies between go
     assert.equal(to_half(65519), 0x7bff);
 });
 
-test('A request says in words what it does to its environment', () => {
-    const words = irradiance => lighting_words({ irradiance });
-    assert.deepEqual(lighting_words({}), []);
-    assert.deepEqual(words(no_edit()), []);
-    assert.deepEqual(words({ rotation_deg: [0, -30.04, 0], exposure_stops: -1.5 }), [
-        'sky turned by -30°',
-        '-1.5 stops',
-    ]);
-    assert.deepEqual(words({ rotation_deg: [10, 0, 5], tint: [1, 1, 0.9], lights: [{}] }), [
-        'sky turned by 10° 0° 5° about X Y Z',
-        'tinted',
-        '1 light added',
-    ]);
+test('The text of a request names what it does to its environment, from either place of its fields', () => {
+    assert.deepEqual(lighting_text({}), []);
+    assert.deepEqual(lighting_text({ irradiance: no_edit() }), []);
+    const turned = { rotation_deg: [0, -30.04, 0], exposure_stops: -1.5 };
+    for (const request of [{ irradiance: turned }, { environment_settings: turned }])
+        assert.deepEqual(lighting_text(request), ['sky turned by -30°', '-1.5 stops']);
+    const tinted = { rotation_deg: [10, 0, 5], tint: [1, 1, 0.9] };
+    for (const request of [
+        { irradiance: { ...tinted, lights: [{}] } },
+        { environment_settings: tinted, irradiance: { lights: [{}] } },
+    ])
+        assert.deepEqual(lighting_text(request), ['sky turned by 10° 0° 5° about X Y Z', 'tinted', '1 light added']);
+});
+
+const edit = { ...no_edit(), exposure_stops: 1 };
+const side = { bake: 0, part: 'diffuse', as_baked: false };
+
+test('A bake that holds the edit is shown as baked beside the one that was edited, and begins a new edit alone', () => {
+    const orders = new EditOrders();
+    orders.add('new', orders.edit_number, 'old');
+    const two = arrange([{ id: 'old' }, { id: 'new' }], side, edit, orders);
+    assert.deepEqual(two.sides, [side, { ...side, bake: 1, as_baked: true }]);
+    assert.equal(two.edit, edit);
+    assert.equal(orders.edit_number, 0);
+    const alone = arrange([{ id: 'new' }], { ...side, bake: 1, as_baked: true }, edit, orders);
+    assert.deepEqual(alone, { sides: [side], edit: no_edit() });
+    assert.equal(orders.edit_number, 1);
+    assert.equal(arrange([{ id: 'new' }], side, edit, orders).edit, edit); // an edit of the new bake
+});
+
+test('After its edit has ended an ordered bake holds the edit beside the edited bake only', () => {
+    const orders = new EditOrders();
+    orders.add('new', orders.edit_number, 'old');
+    orders.begin_edit();
+    const as_baked = left => arrange([{ id: left }, { id: 'new' }], side, edit, orders).sides[1].as_baked;
+    assert.deepEqual(['old', 'other'].map(as_baked), [true, false]);
+    assert.ok(!orders.holds_edit('other'));
 });

@@ -28,7 +28,7 @@ export function free_port() {
     });
 }
 
-/** Of the site's file, only where it listens and what it passes requests on to are replaced. */
+/** The site's file; only the addresses of nginx and of the daemon are replaced. */
 function site(port, daemon_address) {
     return readFileSync(join(docker, 'nginx-site.conf'), 'utf8')
         .replace(/server unix:[^;]+;/, `server ${new URL(daemon_address).host};`)
@@ -42,12 +42,12 @@ export async function start_nginx(daemon_address) {
     for (const name of ['nginx.conf', 'nginx-locations.conf']) copyFileSync(join(docker, name), join(folder, name));
     writeFileSync(join(folder, 'site.conf'), site(port, daemon_address));
     chmodSync(folder, 0o770);
-    const log = openSync(join(folder, 'log'), 'a'); // it opens /dev/stdout, which node's own pipes do not allow
+    const log = openSync(join(folder, 'log'), 'a'); // nginx opens /dev/stdout, which fails with node's pipes
     chmodSync(join(folder, 'log'), 0o660);
     const nginx = spawn('nginx', ['-p', folder, '-c', join(folder, 'nginx.conf')], {
         stdio: ['ignore', log, log],
         env: { ...process.env, PATH: `${process.env.PATH}:/usr/sbin` },
-        ...(process.getuid() === 0 && { uid: nobody, gid: process.getgid() }), // as a deployment runs it: never as root
+        ...(process.getuid() === 0 && { uid: nobody, gid: process.getgid() }), // never as root, like a deployment
     });
     const address = `http://127.0.0.1:${port}`;
     for (const end = Date.now() + patience_ms; ; await new Promise(done => setTimeout(done, 50))) {

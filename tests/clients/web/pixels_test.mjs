@@ -1,9 +1,9 @@
-// The viewer's linear pixels against the specification, evaluated in viewer_reference.mjs.
+// The viewer's linear pixels against the specification, which viewer_reference.mjs evaluates.
 //
-// Which point of a strand a pixel shows must be known to some 1e-5 of a pixel, since random texels have slopes of their
-// own size. So every strand belongs to one of the views and is horizontal there, at a depth of its own, with its
-// vertices on centres of pixels: along it the place is linear in the pixel's column, with nothing to round. Pixels near
-// strands of other views are left out.
+// The maps have random texels with steep slopes, so the point of a strand in a pixel must be known to about 1e-5 of a
+// pixel. Therefore every strand belongs to one view. There it is horizontal, at its own depth, with its vertices on
+// centres of pixels: the point is linear in the pixel's column, without rounding. Pixels near strands of other views
+// are left out.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { as_half, bake_service, generator, random_maps, strand_files } from './raw_files.mjs';
@@ -12,8 +12,8 @@ import { Camera, mix, normalized, radiance } from './viewer_reference.mjs';
 
 const width = 400,
     height = 300;
-// Of the largest value of the picture: a tenth of what the method's user is promised. Found are errors up to 4e-5:
-// single precision (6e-8) of the eye's direction, times 33 maps and texels of slope 4.
+// Relative to the largest value of the picture: a tenth of the error that users are promised. Measured errors are up to
+// 4e-5, from single precision (6e-8) of the eye's direction, times 33 maps and texels of slope 4.
 const tolerance = 1e-4;
 const step = 3; // every third pixel is compared
 const views = [
@@ -89,7 +89,7 @@ function random_hair(random) {
     return { vertices, begin, rows };
 }
 
-/** What a bake's point is between two vertices, from the eye. */
+/** The interpolated point between two vertices, seen from the eye. */
 function point_between(a, b, s, camera) {
     const moment = v => v.cone.slice(0, 3).map(x => x * v.average * 0.5 * (1 + Math.cos(v.cone[3])));
     const place = mix(a.position, b.position, s);
@@ -245,6 +245,6 @@ for (const [what, [edit, sides]] of Object.entries(cases))
         }
     });
 
-test("Nothing was said on the browser's console", () => {
+test("Nothing was written to the browser's console", () => {
     assert.deepEqual(page.problems, []);
 });

@@ -12,7 +12,7 @@ export function generator(seed) {
     };
 }
 
-/** A number that a half holds, 0 or of [2^-14, 65504], next to x towards 0, and its bits. */
+/** The half float next to x towards 0, of 0 and [2^-14, 65504]: { value, bits }. */
 export function as_half(x) {
     const magnitude = Math.abs(x);
     if (magnitude < 2 ** -14) return { value: 0, bits: 0 };
@@ -83,7 +83,7 @@ export function strand_files(vertices, begin) {
     return { 'strands.json': JSON.stringify(page), 'strands.bin': Buffer.concat(pieces) };
 }
 
-/** What the service answers about a bake of these files, and the files: an `answer` of support.mjs's serve(). */
+/** Simulates the service for bakes of these files: an `answer` of support.mjs's serve(). */
 export function bake_service(bakes) {
     return (method, path) => {
         const [, id, name] = path.match(/^\/v1\/bakes\/(\w+)(?:\/files\/([\w.]+))?$/) ?? [];

@@ -56,11 +56,12 @@ class Relight(unittest.TestCase):
             sky = daemon.put(random_sky(7))
             first, before = self.bake(daemon, {
                 "environment": f"sha256:{sky}", "outputs": ["npy"],
-                "irradiance": {"face_size": SIDE, "specular_maps": MAPS, "exponent": EXPONENT,
-                               "rotation_deg": [10, -75, 40], "exposure_stops": 0.5, "tint": [1, 0.8, 0.6],
+                "fiber": {"kajiya_kay": {"exponent": EXPONENT}},
+                "environment_settings": {"rotation_deg": [10, -75, 40], "exposure_stops": 0.5, "tint": [1, 0.8, 0.6]},
+                "irradiance": {"face_size": SIDE, "specular_maps": MAPS,
                                "lights": [{"direction": [1, 2, -0.5], "irradiance": [1, 2, 3]}]}})
             second, after = self.bake(daemon, compose(first, edit))
-        self.assertEqual(second["irradiance"]["exposure_stops"], -1)
+        self.assertEqual(second["environment_settings"]["exposure_stops"], -1)
         self.assertEqual(len(second["irradiance"]["lights"]), 2)
 
         # About X by 90, Y by 180, then Z by 90 degrees: (x, y, z) -> (x, -z, y) -> (-x, -z, -y) -> (z, -x, -y). Back:

@@ -1,4 +1,4 @@
-// What the tests of the viewer share: the staged files behind a small server on a free port, and pages of a browser.
+// Shared by the viewer's tests: the staged files behind a small server on a free port, and pages of a browser.
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { tmpdir } from 'node:os';
@@ -68,7 +68,7 @@ export async function open_page(browser, options = {}) {
     page.problems = [];
     page.on('pageerror', error => page.problems.push(`exception: ${error.stack}`));
     page.on('console', message => {
-        const waits = message.text().includes('GPU stall due to ReadPixels'); // what reading back and timing a frame are
+        const waits = message.text().includes('GPU stall due to ReadPixels'); // expected: tests read frames back
         if (['error', 'warning'].includes(message.type()) && !waits) page.problems.push(message.text());
     });
     return page;

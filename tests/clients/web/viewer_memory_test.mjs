@@ -1,4 +1,4 @@
-// What the viewer holds on the graphics card, and a model of the largest published size in it.
+// Memory of the viewer on the graphics card, also with a model of the largest published size.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { as_half, bake_service, generator, random_maps, strand_files } from './raw_files.mjs';
@@ -98,7 +98,7 @@ after(async () => {
     site?.remove();
 });
 
-test('A bake takes one geometry and one texture, and a change of model frees what it replaces', async () => {
+test('A bake takes one geometry and one texture, and another model frees those of the first', async () => {
     const found = await page.evaluate(async () => {
         const { load, view } = window,
             memory = [];
@@ -168,6 +168,6 @@ test('1.5 million vertices are loaded and drawn, and their memory is freed', asy
     assert.deepEqual(after_all, { geometries: 0, textures: 0 });
 });
 
-test("Nothing was said on the browser's console", () => {
+test("Nothing was written to the browser's console", () => {
     assert.deepEqual(page.problems, []);
 });

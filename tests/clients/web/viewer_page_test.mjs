@@ -1,4 +1,4 @@
-// The viewer as its user meets it, in a browser, with a service that is only played.
+// The viewer's page in a browser, with a simulated service.
 import assert from 'node:assert/strict';
 import { mkdirSync, readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
@@ -18,10 +18,10 @@ const html = `<!doctype html><html lang="en"><head><meta charset="utf-8"><title>
 <body><main class="container-fluid"><h1>Viewer</h1><div id="place"></div></main>
 <script type="module" src="/mount.js"></script></body></html>`;
 const mount = `import { html, render } from '/vendor/preact.js';
-import { make_api } from '/app/api.js';
+import { Api } from '/app/api.js';
 import { ViewerPage } from '/viewer/viewer_page.js';
 const place = document.querySelector('#place');
-const api = make_api(() => (window.locked = true));
+const api = new Api(() => (window.locked = true));
 const show = () => {
     const [left, right] = location.hash.replace(/^#\\/(view\\/)?/, '').split('/');
     render(html\`<\${ViewerPage} left=\${left} right=\${right} api=\${api} />\`, place);
@@ -30,14 +30,14 @@ addEventListener('hashchange', show);
 show();
 window.unmount = () => render(null, place);`;
 
-const sources = { strands: 'first', maps: 'second' }; // what the new bake has in common with older ones
+const sources = { strands: 'first', maps: 'second' }; // the older bakes whose files the new bake shares
 const going = json({ id: 'new', state: 'running' });
 let site, server, browser, page, posted, refusal;
-let done, expired; // the new bake; whether files are refused
+let done, expired; // the view of the new bake; whether files are refused
 let ordered; // the id of the bake that an order makes
-let polls; // answers about the bake that was asked for; the last one stays
+let polls; // answers about the ordered bake; the last one is repeated
 
-/** Curls round a ball: something that can be recognised in a picture. */
+/** Curls around a ball, which is easy to recognise in a picture. */
 function ball_of_hair(random) {
     const vertices = [],
         begin = [0];
@@ -71,11 +71,13 @@ before(async () => {
     const random = generator(11),
         hair = ball_of_hair(random);
     const maps = (count, exponent = 64, scale = 1) => random_maps(random, 8, count, { scale, exponent }).files;
+    // The first bake's request has the places of older bakes, the second one's the new ones.
     const request = { irradiance: { rotation_deg: [0, 30, 0], exposure_stops: 1, tint: [1, 1, 1], lights: [] } };
+    const second_request = { environment_settings: { rotation_deg: [0, 10, 0] } };
     const names = { environment: { path: 'stage/dawn', version: 2 } };
     const bakes = bake_service({
         first: { files: { ...hair, ...maps(34) }, request, names },
-        second: { files: { ...hair, ...maps(10, 20) }, request: { irradiance: { rotation_deg: [0, 10, 0] } } },
+        second: { files: { ...hair, ...maps(10, 20) }, request: second_request },
         dim: { files: { ...hair, ...maps(10, 64, 2 ** -20) } },
         unread: {
             files: { 'transmittance.npy': Buffer.alloc(1) },
@@ -122,7 +124,7 @@ beforeEach(() => {
     polls = [going, done];
 });
 afterEach(async () => {
-    const problems = page.problems.filter(problem => !/status of [45]\d\d/.test(problem)); // answers that a test asks for
+    const problems = page.problems.filter(problem => !/status of [45]\d\d/.test(problem)); // tests provoke those
     await page.close();
     assert.deepEqual(problems, [], "on the browser's console");
 });
@@ -162,7 +164,7 @@ test("Hair appears with the frame's time, and axe finds nothing wrong, light or 
 
 test('Arrow keys orbit, plus comes nearer, and F frames again', async () => {
     await open('first');
-    await page.focus('.viewer canvas'); // its frame is in the picture
+    await page.focus('.viewer canvas'); // the focus frame is in the picture
     const before = await picture();
     await page.keyboard.press('ArrowLeft');
     const turned = await picture();
@@ -226,19 +228,15 @@ test('The edited lighting is shown at once and baked as a request: turned, expos
     assert.deepEqual(posted, [
         {
             hair: 'sha256:0',
-            environment: 'name:stage/dawn@2', // as which the old bake was asked for
+            environment: 'name:stage/dawn@2', // the reference of the old bake
             outputs: ['raw'],
-            irradiance: {
-                rotation_deg: [0, 90, 0],
-                exposure_stops: 1.1,
-                tint: [1, 1, 1],
-                lights: [{ direction: [0, 1, 0], irradiance: [4, 4, 4] }],
-            },
+            environment_settings: { rotation_deg: [0, 90, 0], exposure_stops: 1.1, tint: [1, 1, 1] },
+            irradiance: { lights: [{ direction: [0, 1, 0], irradiance: [4, 4, 4] }] },
         },
     ]);
 });
 
-test('What is baked is the lighting of the bake that is shown, not of the first one', async () => {
+test('The lighting of the bake that is shown is baked, not that of the first one', async () => {
     await open('first/second');
     await page.getByText('Exponent 64, as baked').waitFor();
     await page.getByLabel('Split').selectOption('One picture');
@@ -247,10 +245,10 @@ test('What is baked is the lighting of the bake that is shown, not of the first 
     await slider('Turn about the vertical').fill('60');
     await page.getByRole('button', { name: 'Bake this lighting' }).click();
     assert.equal(await page.getByRole('link', { name: 'compare' }).getAttribute('href'), '#/view/second/new');
-    assert.deepEqual(posted[0].irradiance.rotation_deg, [0, 70, 0]);
+    assert.deepEqual(posted[0].environment_settings.rotation_deg, [0, 70, 0]);
 });
 
-test('With another bake beside it camera and edit stay, and what both share is not fetched again', async () => {
+test('With another bake beside it camera and edit stay, and shared files are not fetched again', async () => {
     await open('first');
     const fetched = [];
     page.on('request', request => fetched.push(new URL(request.url()).pathname));
@@ -277,7 +275,7 @@ test('With another bake beside it camera and edit stay, and what both share is n
     assert.ok(await page.getByRole('button', { name: 'Bake this lighting' }).isDisabled(), 'it is edited twice');
 });
 
-test('What an edit was baked into is not edited once more where the edit has gone on since', async () => {
+test('The edit is not applied to the bake that holds it, also where the edit has changed since', async () => {
     await open('first');
     await slider('Turn about the vertical').fill('60');
     await page.getByRole('button', { name: 'Bake this lighting' }).click();
@@ -306,7 +304,7 @@ test('An edit that begins in a bake ordered here is an edit of that bake', async
     await page.getByRole('link', { name: 'compare' }).click();
     await page.getByText(/^second.*, as baked$/).waitFor();
     assert.match(await page.innerText('.viewer-captions'), /new.*, edited/);
-    assert.deepEqual(posted[1].irradiance.rotation_deg, [0, 50, 0]); // 30 in the played bake, and 20
+    assert.deepEqual(posted[1].environment_settings.rotation_deg, [0, 50, 0]); // 30 of the simulated bake, and 20
     await page.goBack();
     await page.waitForFunction(() => document.querySelectorAll('.viewer-captions span').length === 1);
     assert.match(await page.innerText('.viewer-captions'), /new.*, edited/);
@@ -321,15 +319,15 @@ test('A refusal of the service is shown as text', async () => {
     await page.getByText(`It was not baked: ${hostile}`).waitFor();
 });
 
-test('A bake is followed through lost answers, until the service refuses', async () => {
+test('A bake is watched through lost answers, until the service refuses', async () => {
     await open('first');
     polls = [json({ detail: 'Not now.' }, 503)];
     await slider('Turn about the vertical').fill('60');
     const bake = page.getByRole('button', { name: 'Bake this lighting' });
     await bake.click();
-    await page.getByText('The new bake is queued. Not now. It is asked again.').waitFor();
+    await page.getByText('The new bake is queued. Not now. The request is repeated.').waitFor();
     polls = [json({ detail: 'Too many.' }, 429)];
-    await page.getByText('The new bake is queued. Too many. It is asked again.').waitFor();
+    await page.getByText('The new bake is queued. Too many. The request is repeated.').waitFor();
     assert.ok(await bake.isDisabled());
     polls = [going];
     await page.getByText('The new bake is running.', { exact: true }).waitFor();
@@ -338,7 +336,7 @@ test('A bake is followed through lost answers, until the service refuses', async
     assert.ok(await bake.isEnabled());
     polls = [json({ detail: 'no such bake' }, 404)];
     await bake.click();
-    await page.getByText('The new bake can be followed no longer: no such bake').waitFor();
+    await page.getByText('The new bake can no longer be watched: no such bake').waitFor();
     assert.ok(await bake.isEnabled());
 });
 
@@ -373,7 +371,7 @@ test("A screenshot is a PNG of the picture's size", async () => {
     assert.deepEqual([bytes.readUInt32BE(16), bytes.readUInt32BE(20)], size);
 });
 
-test('A bake without the output raw says what to ask for, and asks for it', async () => {
+test('A bake without the output raw gives a message and a button that bakes it with raw', async () => {
     await open('unread');
     assert.match(await page.innerText('.viewer-problem'), /did not write the output "raw"/);
     await page.getByRole('button', { name: 'Bake it with "raw"' }).click();
@@ -382,25 +380,25 @@ test('A bake without the output raw says what to ask for, and asks for it', asyn
     assert.equal(posted[0].hair, 'name:heads/curly@1');
 });
 
-test('A bake without hair and one whose files do not fit together are told of in words', async () => {
+test('A bake without hair and one with inconsistent files give a message', async () => {
     await open('bald');
     assert.match(await page.innerText('.viewer-problem'), /This bake has no hair\. The viewer needs both/);
     await page.close();
     await open('broken');
     assert.match(
         await page.innerText('.viewer-problem'),
-        /strands\.bin does not hold positions as strands\.json tells/,
+        /strands\.bin does not hold positions as strands\.json states/,
     );
 });
 
-test('Where the session has expired the page is told, which asks for a token', async () => {
+test('An expired session is reported to the page, which asks for a token', async () => {
     expired = true;
     await open('first');
     assert.match(await page.innerText('.viewer-problem'), /strands.json .* could not be fetched: A token is needed/);
     assert.ok(await page.evaluate(() => window.locked));
 });
 
-test('A browser without WebGL 2 is told so', async () => {
+test('A browser without WebGL 2 gets a message', async () => {
     page = await open_page(browser);
     await page.addInitScript(() => {
         HTMLCanvasElement.prototype.getContext = () => null;

@@ -1,4 +1,4 @@
-// What the viewer should show, from the specification: nothing here is taken from the viewer.
+// The pixels that the viewer should show, by the specification. Nothing here is taken from the viewer.
 
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
@@ -165,7 +165,7 @@ function cone_seen(average, moment, light) {
 
 /**
  * Light from a point {tangent, to_eye, average, sh, moment} to the eye. `scene`: {maps, scale, exponent, look, edit};
- * lights of the edit are {direction, irradiance}. `side`: what of it is shown.
+ * lights of the edit are {direction, irradiance}. `side`: the settings of one side of the viewer.
  */
 export function radiance(point, scene, side) {
     if (side.part === 'transmittance') return [point.average, point.average, point.average];

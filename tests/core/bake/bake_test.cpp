@@ -43,6 +43,10 @@ void bake_to(const BakeRequest& request, const fs::path& folder, int threads = 2
     write_result(result, folder, progress);
 }
 
+const std::optional<ErrorBar>& error_bar_of(const BakeResult& result) {
+    return std::get<TransmittanceFacts>(result.part("transmittance")->facts).error_bar;
+}
+
 TEST(Bake, SameRequestGivesTheSameBytesForOneTwoAndSevenThreads) {
     const SmallInputs inputs;
     BakeRequest request = inputs.request();
@@ -69,7 +73,7 @@ TEST(Bake, AnOccluderDarkensTheHairAndTheManifestTellsWhatItIs) {
     for (const auto method : {TransmittanceMethod::volume, TransmittanceMethod::trace}) {
         request.transmittance.method = method;
         BakeResult result = bake(request, 2, progress);
-        EXPECT_NE(result.transmittance_key, bare.transmittance_key);
+        EXPECT_NE(result.part("transmittance")->key, bare.part("transmittance")->key);
         write_result(result, inputs.folder / "out", progress);
         const Json manifest = Json::parse(get(inputs.folder / "out" / "manifest.json"));
         const Json& occluder = manifest["inputs"]["occluder"];
@@ -79,7 +83,7 @@ TEST(Bake, AnOccluderDarkensTheHairAndTheManifestTellsWhatItIs) {
         EXPECT_EQ(manifest["warnings"], Json::array());
         // The hair of 3,000 vertices is thin: the head alone takes about half of a root's sky.
         EXPECT_LT(manifest["transmittance"]["mean"].get<double>(), 0.9);
-        EXPECT_LT(result.transmittance->average[0], 0.55f);
+        EXPECT_LT(result.array(average_transmittance_kind())->values[0], 0.55f);
         EXPECT_LT(std::abs(manifest["error_bar"]["bias"].get<double>()), 0.05);
     }
     // Without its last triangle it is a shell.
@@ -88,7 +92,7 @@ TEST(Bake, AnOccluderDarkensTheHairAndTheManifestTellsWhatItIs) {
     std::ofstream(inputs.folder / "open.obj") << text;
     request.occluder = (inputs.folder / "open.obj").string();
     const BakeResult open = bake(request, 2, progress);
-    EXPECT_FALSE(open.occluder_topology.closed);
+    EXPECT_FALSE(open.inputs.occluder->topology.closed);
     ASSERT_EQ(open.warnings.size(), 1u);
     EXPECT_NE(open.warnings[0].find("3 of its"), std::string::npos) << open.warnings[0];
 }
@@ -143,10 +147,10 @@ TEST(Bake, TakesTheMethodOfOpacityMaps) {
     request.transmittance.opacity_maps.resolution = 64;
     BakeProgress progress;
     const BakeResult maps = bake(request, 2, progress);
-    EXPECT_EQ(maps.transmittance->average.size(), 3000u);
-    EXPECT_TRUE(maps.error_bar.has_value());
+    EXPECT_EQ(maps.array(average_transmittance_kind())->values.size(), 3000u);
+    EXPECT_TRUE(error_bar_of(maps).has_value());
     request.transmittance.opacity_maps.layers = 4;
-    EXPECT_NE(bake(request, 2, progress).transmittance_key, maps.transmittance_key);
+    EXPECT_NE(bake(request, 2, progress).part("transmittance")->key, maps.part("transmittance")->key);
 }
 
 TEST(Bake, WritesEveryOutputAndTheManifestKnowsItsDigestSizeAndScale) {
@@ -219,10 +223,11 @@ TEST(Bake, StagesDoNotKnowOfEachOther) {
     environment.hair.reset();
     BakeProgress progress;
     const BakeResult b = bake(both, 2, progress), h = bake(hair, 2, progress), e = bake(environment, 2, progress);
-    EXPECT_EQ(b.transmittance_key, h.transmittance_key);
-    EXPECT_EQ(b.irradiance_key, e.irradiance_key);
-    EXPECT_EQ(b.transmittance->average, h.transmittance->average);
-    EXPECT_EQ(b.irradiance->specular, e.irradiance->specular);
+    EXPECT_EQ(b.part("transmittance")->key, h.part("transmittance")->key);
+    EXPECT_EQ(b.part("irradiance")->key, e.part("irradiance")->key);
+    const ArrayKind& average = average_transmittance_kind();
+    EXPECT_EQ(b.array(average)->values, h.array(average)->values);
+    EXPECT_EQ(b.part("irradiance")->maps->find("specular")->cubes, e.part("irradiance")->maps->find("specular")->cubes);
     EXPECT_NE(b.id, h.id);
     EXPECT_NE(b.id, e.id);
 }
@@ -261,9 +266,9 @@ TEST(Bake, TraceGivesWhatTheErrorBarTracesWithTheSameDirections) {
     request.transmittance.directions = 1024;  // as the error bar, Fibonacci as well
     BakeProgress progress;
     const BakeResult result = bake(request, 2, progress);
-    ASSERT_TRUE(result.error_bar.has_value());
-    EXPECT_EQ(result.error_bar->rmse, 0);
-    EXPECT_EQ(result.error_bar->bias, 0);
+    ASSERT_TRUE(error_bar_of(result).has_value());
+    EXPECT_EQ(error_bar_of(result)->rmse, 0);
+    EXPECT_EQ(error_bar_of(result)->bias, 0);
 }
 
 TEST(Bake, EveryMethodAnswersHarmonicsConesAndTheReceiver) {
@@ -280,13 +285,13 @@ TEST(Bake, EveryMethodAnswersHarmonicsConesAndTheReceiver) {
         request.transmittance.method = trace ? TransmittanceMethod::trace : TransmittanceMethod::volume;
         BakeProgress progress;
         const BakeResult result = bake(request, 2, progress);
-        const std::size_t vertices = result.transmittance->average.size();
-        EXPECT_EQ(result.transmittance->sh.size(), 4 * vertices);
-        EXPECT_EQ(result.transmittance->bent_cone.size(), 4 * vertices);
-        ASSERT_EQ(result.transmittance->receiver.size(), 2 * result.receiver->positions.size());
-        for (const float t : result.transmittance->receiver)
-            mean[trace] += double(t) / double(result.transmittance->receiver.size());
-        EXPECT_EQ(result.hair_inputs.receiver, digest_of_file(*request.receiver));
+        const std::size_t vertices = result.array(average_transmittance_kind())->values.size();
+        EXPECT_EQ(result.array(transmittance_sh_kind())->values.size(), 4 * vertices);
+        EXPECT_EQ(result.array(bent_cone_kind())->values.size(), 4 * vertices);
+        ASSERT_EQ(result.array(receiver_kind())->values.size(), 2 * result.inputs.receiver->positions);
+        for (const float t : result.array(receiver_kind())->values)
+            mean[trace] += double(t) / double(result.array(receiver_kind())->values.size());
+        EXPECT_EQ(result.inputs.digests.at("receiver"), digest_of_file(*request.receiver));
         bake_to(request, inputs.folder / "result");
         for (const char* name : {"transmittance_sh.npy", "bent_cone.npy", "receiver.npy"})
             EXPECT_TRUE(fs::exists(inputs.folder / "result" / name)) << name;
@@ -301,7 +306,7 @@ TEST(Bake, WithoutReferenceVerticesThereIsNoErrorBarAndNoTimeForIt) {
     request.transmittance.reference_vertices = 0;
     BakeProgress progress;
     const BakeResult result = bake(request, 2, progress);
-    EXPECT_FALSE(result.error_bar.has_value());
+    EXPECT_FALSE(error_bar_of(result).has_value());
     EXPECT_EQ(result.measured.timings_s.at("reference"), 0);
 }
 

@@ -62,7 +62,7 @@ nlohmann::json issues_of(const std::filesystem::path& file) {
 TEST(Glb, TinygltfFindsTheVerticesTheLinesAndA) {
     const TemporaryFolder folder;
     const BakeResult result = small_result();
-    const WrittenFile file = write_glb(*result.hair, *result.transmittance, folder / "");
+    const WrittenFile file = write_glb(*result.hair, result.parts[0].arrays, result.request, folder / "");
     EXPECT_EQ(file.name, "hair.glb");
     EXPECT_EQ(file.bytes, std::filesystem::file_size(folder / "hair.glb"));
     const tinygltf::Model model = load(folder / "hair.glb");
@@ -88,11 +88,12 @@ TEST(Glb, TinygltfFindsTheVerticesTheLinesAndA) {
 TEST(Glb, HoldsSphericalHarmonicsAndBentConesWhereTheBakeHasThem) {
     const TemporaryFolder folder;
     BakeResult result = small_result();
-    for (int i = 0; i < 5 * 9; ++i) result.transmittance->sh.push_back(static_cast<float>(i));
-    for (int i = 0; i < 5 * 4; ++i) result.transmittance->bent_cone.push_back(static_cast<float>(-i));
-    write_glb(*result.hair, *result.transmittance, folder / "");
+    std::vector<VertexArray>& arrays = test_support::transmittance_of(result).arrays;
+    arrays.push_back(test_support::counted_array(transmittance_sh_kind(), 5, 9, 1));
+    arrays.push_back(test_support::counted_array(bent_cone_kind(), 5, 4, -1));
+    write_glb(*result.hair, result.parts[0].arrays, result.request, folder / "");
     const tinygltf::Model model = load(folder / "hair.glb");
-    EXPECT_EQ(floats_of(model, "_BENT_CONE", TINYGLTF_TYPE_VEC4), result.transmittance->bent_cone);
+    EXPECT_EQ(floats_of(model, "_BENT_CONE", TINYGLTF_TYPE_VEC4), arrays.back().values);
     for (int i = 0; i < 9; ++i) {
         const auto found = floats_of(model, "_TRANSMITTANCE_SH_" + std::to_string(i), TINYGLTF_TYPE_SCALAR);
         EXPECT_EQ(found, (std::vector<float>{float(i), float(9 + i), float(18 + i), float(27 + i), float(36 + i)}));
@@ -105,14 +106,14 @@ TEST(Glb, IsValidForModelsWithoutSegmentsAndWithoutVertices) {
     const TemporaryFolder folder;
     BakeResult result = small_result();
     result.hair->strand_begin = {0, 1, 2, 3, 4, 5};
-    write_glb(*result.hair, *result.transmittance, folder / "");
+    write_glb(*result.hair, result.parts[0].arrays, result.request, folder / "");
     EXPECT_EQ(load(folder / "hair.glb").meshes.at(0).primitives.at(0).mode, TINYGLTF_MODE_POINTS);
     EXPECT_EQ(issues_of(folder / "hair.glb"), nlohmann::json::array());
 
     const TemporaryFolder empty;
     HairModel none;
     none.strand_begin = {0};
-    write_glb(none, Transmittance{}, empty / "");
+    write_glb(none, {}, BakeRequest{}, empty / "");
     const tinygltf::Model model = load(empty / "hair.glb");
     EXPECT_TRUE(model.meshes.empty());
     EXPECT_EQ(issues_of(empty / "hair.glb"), nlohmann::json::array());
@@ -120,13 +121,17 @@ TEST(Glb, IsValidForModelsWithoutSegmentsAndWithoutVertices) {
 
 TEST(Glb, BeyondFourGibibytesIsRefusedBeforeAnyMemoryIsTaken) {
     // 12 + 12 + 4 bytes a vertex and 8 a segment: 36 V - 8 S. (2^32 - 1 - 2^16) / 36 = 119.3 million.
-    EXPECT_NO_THROW(check_glb_size(119'000'000, 1, 0, false));
-    EXPECT_NO_THROW(check_glb_size(37'000'000, 1, 4, true));  // 116 bytes each
-    for (const auto& [vertices, bands, cone] : {std::tuple{std::uint64_t{120'000'000}, 0, false},
-                                                {std::uint64_t{38'000'000}, 4, true},
-                                                {std::uint64_t{4'000'000'000}, 0, false}}) {
+    BakeRequest plain, full;
+    plain.hair = full.hair = "a.hair";
+    full.transmittance.sh_bands = 4;
+    full.transmittance.bent_cone = true;
+    EXPECT_NO_THROW(check_glb_size(119'000'000, 1, plain));
+    EXPECT_NO_THROW(check_glb_size(37'000'000, 1, full));  // 116 bytes each
+    for (const auto& [vertices, request] : {std::pair{std::uint64_t{120'000'000}, plain},
+                                            {std::uint64_t{38'000'000}, full},
+                                            {std::uint64_t{4'000'000'000}, plain}}) {
         try {
-            check_glb_size(vertices, 1, bands, cone);
+            check_glb_size(vertices, 1, request);
             ADD_FAILURE() << vertices;
         } catch (const Error& error) {
             EXPECT_EQ(error.kind(), ErrorKind::bad_input);

@@ -6,10 +6,10 @@
 
 #include "core/base/error.h"
 #include "core/base/random.h"
+#include "core/output/array_files.h"
 #include "core/output/dds_files.h"
 #include "core/output/half.h"
 #include "core/output/ktx2_files.h"
-#include "core/output/map_files.h"
 #include "core/output/map_metadata.h"
 #include "core/output/raw_maps.h"
 #include "tests/support/labelled_cube.h"
@@ -23,13 +23,13 @@ namespace {
 using test_support::run_program;
 using test_support::TemporaryFolder;
 
-IrradianceMaps maps_of(int face_size, const std::vector<CubeTexels>& cubes) {
+MapSet maps_of(int face_size, const std::vector<CubeTexels>& cubes) {
     IrradianceMaps maps;
     maps.face_size = face_size;
     maps.exponent = 64;
     maps.diffuse = cubes.at(0);
     maps.specular.assign(cubes.begin() + 1, cubes.end());
-    return maps;
+    return to_map_set(maps, "kajiya-kay");
 }
 
 /// Every texel and channel distinct, over five decades below `largest`, which one of them is.
@@ -42,28 +42,28 @@ CubeTexels random_cube(int face_size, float largest, std::uint64_t seed) {
     return cube;
 }
 
-IrradianceMaps random_maps(int face_size, float largest) {
+MapSet random_maps(int face_size, float largest) {
     return maps_of(face_size, {random_cube(face_size, largest, 1), random_cube(face_size, largest / 3, 2),
                                random_cube(face_size, largest, 3), random_cube(face_size, largest / 100, 4)});
 }
 
 struct Container {
     std::string name;
-    std::vector<WrittenFile> (*write)(const IrradianceMaps&, const std::filesystem::path&, Progress&);
+    std::vector<WrittenFile> (*write)(const MapSet&, const std::filesystem::path&, Progress&);
 };
 void PrintTo(const Container& container, std::ostream* stream) { *stream << container.name; }
 
-std::vector<WrittenFile> ktx2(const IrradianceMaps& maps, const std::filesystem::path& folder, Progress& progress) {
+std::vector<WrittenFile> ktx2(const MapSet& maps, const std::filesystem::path& folder, Progress& progress) {
     return write_map_ktx2(maps, "Rec.2020", folder, progress);
 }
-std::vector<WrittenFile> raw(const IrradianceMaps& maps, const std::filesystem::path& folder, Progress& progress) {
+std::vector<WrittenFile> raw(const MapSet& maps, const std::filesystem::path& folder, Progress& progress) {
     return write_map_raw(maps, "Rec.2020", folder, progress);
 }
 
 class HalfMaps : public testing::TestWithParam<Container> {
 protected:
     /// What check_half_maps.py prints about the container written of `maps`.
-    std::string read_back(const IrradianceMaps& maps, double scale, const std::string& more = "") {
+    std::string read_back(const MapSet& maps, double scale, const std::string& more = "") {
         const TemporaryFolder folder;
         BakeProgress progress;
         write_map_npy(maps, folder / "");
@@ -100,8 +100,8 @@ TEST_P(HalfMaps, HoldFaintRadianceWithAScale) {
 TEST_P(HalfMaps, RefuseMapsThatAreNotFiniteAndSayWhere) {
     const TemporaryFolder folder;
     BakeProgress progress;
-    IrradianceMaps maps = random_maps(4, 1);
-    maps.specular[1][(2 * 4 + 3) * 4 + 1].z = NAN;
+    MapSet maps = random_maps(4, 1);
+    maps.lobes[1].cubes[1][(2 * 4 + 3) * 4 + 1].z = NAN;
     try {
         GetParam().write(maps, folder / "", progress);
         ADD_FAILURE() << "was written";

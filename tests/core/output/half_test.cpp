@@ -65,12 +65,13 @@ TEST(HalfScale, RefusesWhatIsNotFinite) {
 }
 
 TEST(HalfScale, OfMapsIsThatOfTheLargestMagnitudeOfAllOfThem) {
-    IrradianceMaps maps;
-    maps.face_size = 4;
-    maps.diffuse.assign(96, Vec3f(1));
-    maps.specular.assign(3, CubeTexels(96, Vec3f(1)));
+    IrradianceMaps kajiya_kay;
+    kajiya_kay.face_size = 4;
+    kajiya_kay.diffuse.assign(96, Vec3f(1));
+    kajiya_kay.specular.assign(3, CubeTexels(96, Vec3f(1)));
+    MapSet maps = to_map_set(kajiya_kay, "kajiya-kay");
     EXPECT_EQ(half_scale(maps), 1);
-    maps.specular[2][95].z = -1e5f;  // maps by SH may be negative
+    maps.lobes[1].cubes[2][95].z = -1e5f;  // maps by SH may be negative
     EXPECT_EQ(half_scale(maps), 2);
 }
 

@@ -32,7 +32,7 @@ bool contains(const std::string& text, const std::string& piece) { return text.f
 TEST(MapExr, OiiotoolFindsTheFacesInAVerticalStripWithTheirMetadata) {
     const TemporaryFolder folder;
     BakeProgress progress;
-    const auto files = write_map_exr(*small_result().irradiance, folder / "", progress);
+    const auto files = write_map_exr(*small_result().parts[1].maps, folder / "", progress);
     EXPECT_EQ(files.size(), 8u);  // (diffuse + three specular) x (strip + lat-long)
     const std::string info = oiiotool_info(folder / "specular_01.exr");
     for (const char* piece : {"4 x   24, 3 channel, float openexr", "hairbake:faceOrder: \"+X -X +Y -Y +Z -Z\"",
@@ -46,7 +46,7 @@ TEST(MapExr, OiiotoolFindsTheFacesInAVerticalStripWithTheirMetadata) {
 TEST(MapExr, HoldsNeitherDateNorPath) {
     const TemporaryFolder folder;
     BakeProgress progress;
-    write_map_exr(*small_result().irradiance, folder / "", progress);
+    write_map_exr(*small_result().parts[1].maps, folder / "", progress);
     for (const char* name : {"diffuse.exr", "diffuse_latlong.exr"}) {
         const auto found =
             run_program("grep -a -c -E '20[0-9][0-9]:[0-9][0-9]|hairbake-test-' " + (folder / name).string());
@@ -57,8 +57,9 @@ TEST(MapExr, HoldsNeitherDateNorPath) {
 TEST(MapExr, NamesHaveAsManyDigitsAsTheLastMapNeeds) {
     const TemporaryFolder folder;
     BakeProgress progress;
-    IrradianceMaps maps = *small_result().irradiance;
-    maps.specular.resize(102, maps.diffuse);
+    MapSet maps = *small_result().parts[1].maps;
+    maps.lobes[1].cubes.resize(102, maps.lobes[0].cubes[0]);
+    maps.lobes[1].theta_prime_deg.resize(102);
     write_map_exr(maps, folder / "", progress);
     EXPECT_TRUE(std::filesystem::exists(folder / "specular_001.exr"));
     EXPECT_TRUE(std::filesystem::exists(folder / "specular_101_latlong.exr"));
@@ -82,7 +83,7 @@ TEST(LatLongPicture, LooksAlongTheAxesWhereTheGltfConventionSays) {
 
 TEST(EnvironmentSh, PythonReadsTheCoefficientsToTheLastBit) {
     const TemporaryFolder folder;
-    write_environment_sh(*small_result().irradiance, folder / "");
+    write_environment_sh(std::get<IrradianceFacts>(small_result().parts[1].facts), folder / "");
     const auto python = test_support::run_python(
         "import json, sys; m = json.load(open(sys.argv[1]))\n"
         "assert m['bands'] == 2 and m['coefficients'] == [[1, 2, 3], [.1, .2, .3], [1e-20, 0, -5], [7, 8, 9]]\n"
@@ -97,14 +98,13 @@ TEST_P(Preview, IsAPngThatOiiotoolReadsAndHasSomethingOnIt) {
     // Bit 0: with hair, bit 1: with an environment.
     const TemporaryFolder folder;
     BakeResult result = small_result();
-    if (!(GetParam() & 1)) {
-        result.transmittance.reset();
-        result.hair.reset();
-        result.error_bar.reset();
-    }
     if (!(GetParam() & 2)) {
-        result.irradiance.reset();
-        result.environment.reset();
+        result.parts.pop_back();
+        result.inputs.environment.reset();
+    }
+    if (!(GetParam() & 1)) {
+        result.parts.erase(result.parts.begin());
+        result.hair.reset();
     }
     std::vector<std::string> warnings;
     const WrittenFile file = write_preview(result, folder / "", warnings);
@@ -120,12 +120,14 @@ INSTANTIATE_TEST_SUITE_P(Sheets, Preview, testing::Values(1, 2, 3));
 TEST(PreviewSheet, ShowsAtMost36OfManyMapsAndSurvivesBlackAndEmptyResults) {
     const TemporaryFolder folder;
     BakeResult result = small_result();
-    result.irradiance->specular.assign(257, CubeTexels(96));
-    result.irradiance->diffuse.assign(96, {});
+    MapSet& maps = *test_support::irradiance_of(result).maps;
+    maps.lobes[0].cubes[0].assign(96, {});
+    maps.lobes[1].cubes.assign(257, CubeTexels(96));
+    maps.lobes[1].theta_prime_deg.assign(257, 0);
     result.hair = HairModel{};
     result.hair->strand_begin = {0};
-    result.transmittance->average.clear();
-    result.error_bar->vertices = 0;
+    test_support::transmittance_of(result).arrays[0].values.clear();
+    test_support::error_bar_of(result).vertices = 0;
     std::vector<std::string> warnings;
     const WrittenFile file = write_preview(result, folder / "", warnings);
     EXPECT_LT(file.shape.at(0), 2200u);

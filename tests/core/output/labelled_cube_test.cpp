@@ -12,11 +12,11 @@ namespace {
 
 using test_support::TemporaryFolder;
 
-IrradianceMaps labelled_maps(int size) {
-    IrradianceMaps maps = *test_support::small_result().irradiance;
+MapSet labelled_maps(int size) {
+    MapSet maps = *test_support::small_result().parts[1].maps;
     maps.face_size = size;
-    maps.diffuse = labelled_cube(size);
-    for (CubeTexels& specular : maps.specular) specular = maps.diffuse;
+    for (MapLobe& lobe : maps.lobes)
+        for (CubeTexels& cube : lobe.cubes) cube = labelled_cube(size);
     return maps;
 }
 
@@ -32,12 +32,12 @@ TEST(LabelledMaps, StripAndLatLongShowEveryDirectionItsOwnLabel) {
     // convention gltf, which `auto` and the default take them for.
     const TemporaryFolder folder;
     BakeProgress progress;
-    const IrradianceMaps maps = labelled_maps(64);
+    const MapSet maps = labelled_maps(64);
     write_map_exr(maps, folder / "", progress);
     for (const char* name : {"diffuse", "specular_00"}) {
         const EnvironmentMap strip = read_environment(folder / (std::string(name) + ".exr"), {}, progress);
         EXPECT_EQ(strip.layout, "vertical_strip");
-        EXPECT_EQ(strip.pixels, maps.diffuse);
+        EXPECT_EQ(strip.pixels, maps.lobes[0].cubes[0]);
         expect_labelled(strip);
         const EnvironmentMap latlong = read_environment(folder / (std::string(name) + "_latlong.exr"), {}, progress);
         EXPECT_EQ(latlong.layout, "latlong");

@@ -5,8 +5,7 @@
 #include <fstream>
 
 #include "core/base/error.h"
-#include "core/output/map_files.h"
-#include "core/output/transmittance_files.h"
+#include "core/output/array_files.h"
 #include "tests/core/output/small_result.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
@@ -28,8 +27,8 @@ TEST(Npy, HeaderIsVersionOneAndEndsAtAMultipleOf64) {
 TEST(Npy, NumpyReadsTheMapsAndTheTransmittance) {
     const TemporaryFolder folder;
     const BakeResult result = test_support::small_result();
-    write_transmittance_npy(result.transmittance->average, folder / "");
-    write_map_npy(*result.irradiance, folder / "");
+    write_array_npy(result.parts[0].arrays[0], folder / "");
+    write_map_npy(*result.parts[1].maps, folder / "");
     // Texel k of map m holds (k, k + 0.25, -k) + 1000 (m + 1): see small_result.h.
     const auto python = test_support::run_python(R"(
 import numpy, sys
@@ -47,14 +46,12 @@ print('read'))",
 
 TEST(Npy, NumpyReadsHarmonicsBentConesAndTheReceiver) {
     const TemporaryFolder folder;
-    Transmittance transmittance;
-    transmittance.average.resize(5);
-    for (int i = 0; i < 5 * 9; ++i) transmittance.sh.push_back(0.25f * float(i));
-    for (int i = 0; i < 5 * 4; ++i) transmittance.bent_cone.push_back(-0.5f * float(i));
-    for (int i = 0; i < 3 * 2; ++i) transmittance.receiver.push_back(0.125f * float(i));
-    const auto written = write_directional_npy(transmittance, 3, true, true, folder / "");
-    ASSERT_EQ(written.size(), 3u);
-    EXPECT_EQ(written[0].shape, (std::vector<std::size_t>{5, 9}));
+    const VertexArray arrays[] = {test_support::counted_array(transmittance_sh_kind(), 5, 9, 0.25f),
+                                  test_support::counted_array(bent_cone_kind(), 5, 4, -0.5f),
+                                  test_support::counted_array(receiver_kind(), 3, 2, 0.125f)};
+    for (const VertexArray& array : arrays)
+        EXPECT_EQ(write_array_npy(array, folder / "").shape,
+                  (std::vector<std::size_t>{array.rows(), array.components}));
     const auto python = test_support::run_python(R"(
 import numpy, sys
 f = sys.argv[1]
@@ -65,13 +62,11 @@ for name, shape, step in ('transmittance_sh', (5, 9), .25), ('bent_cone', (5, 4)
 print('read'))",
                                                  (folder / "").string());
     EXPECT_EQ(python.output, "read\n");
-    const TemporaryFolder nothing;
-    EXPECT_TRUE(write_directional_npy(transmittance, 0, false, false, nothing / "").empty());
 }
 
 TEST(Npy, ReadsItsOwnFilesAndThoseOfNumpy) {
     const TemporaryFolder folder;
-    write_transmittance_npy(std::vector<float>{1, 2, 3}, folder / "");
+    write_array_npy({&average_transmittance_kind(), 1, {1, 2, 3}}, folder / "");
     const NpyArray own = read_npy(folder / "transmittance.npy");
     EXPECT_EQ(own.shape, (std::vector<std::size_t>{3}));
     EXPECT_EQ(own.values, (std::vector<float>{1, 2, 3}));

@@ -32,7 +32,7 @@ assert len(data) == max(e['offset'] + e['bytes'] for e in page['arrays'])
 TEST(RawStrands, NumpyFindsPositionsStrandsTangentsAndA) {
     const TemporaryFolder folder;
     const BakeResult result = small_result();
-    const auto files = write_strand_raw(*result.hair, *result.transmittance, folder / "");
+    const auto files = write_strand_raw(*result.hair, result.parts[0].arrays, folder / "");
     EXPECT_EQ(files.size(), 2u);
     EXPECT_EQ(files[0].bytes, std::filesystem::file_size(folder / "strands.bin"));
     const auto python = test_support::run_python(reader + R"(
@@ -50,9 +50,11 @@ print('read'))",
 TEST(RawStrands, HoldSphericalHarmonicsAndBentConesWhereTheBakeHasThem) {
     const TemporaryFolder folder;
     BakeResult result = small_result();
-    for (int i = 0; i < 5 * 4; ++i) result.transmittance->sh.push_back(static_cast<float>(i) / 10);
-    for (int i = 0; i < 5 * 4; ++i) result.transmittance->bent_cone.push_back(static_cast<float>(-i) / 7);
-    write_strand_raw(*result.hair, *result.transmittance, folder / "");
+    VertexArray sh{&transmittance_sh_kind(), 4, {}}, cone{&bent_cone_kind(), 4, {}};
+    for (int i = 0; i < 5 * 4; ++i) sh.values.push_back(static_cast<float>(i) / 10);
+    for (int i = 0; i < 5 * 4; ++i) cone.values.push_back(static_cast<float>(-i) / 7);
+    result.parts[0].arrays.insert(result.parts[0].arrays.end(), {sh, cone});
+    write_strand_raw(*result.hair, result.parts[0].arrays, folder / "");
     const auto python = test_support::run_python(reader + R"(
 i = np.arange(20, dtype=np.float32).reshape(5, 4)
 assert page['sh_bands'] == 2
@@ -67,7 +69,8 @@ TEST(RawStrands, OfAnEmptyModelAreEmptyArrays) {
     const TemporaryFolder folder;
     HairModel none;
     none.strand_begin = {0};
-    write_strand_raw(none, Transmittance{}, folder / "");
+    const std::vector<VertexArray> arrays{{&average_transmittance_kind(), 1, {}}};
+    write_strand_raw(none, arrays, folder / "");
     const auto python = test_support::run_python(reader + R"(
 assert (page['vertices'], page['strands'], page['bounds']) == (0, 0, None)
 assert a['positions'].shape == (0, 3) and a['strand_begin'].tolist() == [0]

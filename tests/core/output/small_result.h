@@ -1,7 +1,7 @@
 // A bake result made by hand: every value is known.
 #pragma once
 
-#include "core/bake_result.h"
+#include "core/result/bake_result.h"
 
 namespace hairbake::test_support {
 
@@ -13,17 +13,28 @@ inline CubeTexels counted_cube(int n, float offset) {
     return cube;
 }
 
+/// The parts and arrays of the results below, to change them.
+inline StagePart& transmittance_of(BakeResult& result) { return result.parts.at(0); }
+inline StagePart& irradiance_of(BakeResult& result) { return result.parts.back(); }
+inline ErrorBar& error_bar_of(BakeResult& result) {
+    return *std::get<TransmittanceFacts>(transmittance_of(result).facts).error_bar;
+}
+
+/// 0, step, 2 step ...: so many numbers a row.
+inline VertexArray counted_array(const ArrayKind& kind, std::size_t rows, std::size_t components, float step) {
+    VertexArray array{&kind, components, {}};
+    for (std::size_t i = 0; i < rows * components; ++i) array.values.push_back(step * static_cast<float>(i));
+    return array;
+}
+
 /// Two strands (3 and 2 points), A = 0, 0.25, 0.5, 0.75, 1; three specular maps of 4x4x6; all outputs.
 inline BakeResult small_result() {
     BakeResult result;
     result.request.hair = "two.hair";
     result.request.environment = "sky.hdr";
     result.id = "0123456789abcdef";
-    result.hair_inputs.hair = "aa";
-    result.transmittance_key = "bb";
-    result.environment_digest = "cc";
-    result.irradiance_key = "dd";
-    result.hair_facts = {2, 5, 3, 1, {0, 0, 0}, {1, 2, 0}};
+    result.inputs.digests = {{"hair", "aa"}, {"environment", "cc"}};
+    result.inputs.hair = HairFacts{2, 5, 3, {0, 0, 0}, {1, 2, 0}};
 
     HairModel model;
     model.strand_begin = {0, 3, 5};
@@ -33,12 +44,10 @@ inline BakeResult small_result() {
     model.default_transparency = 0.125f;
     result.hair = model;
 
-    Transmittance transmittance;
-    transmittance.average = {0, 0.25f, 0.5f, 0.75f, 1};
-    transmittance.directions = 100;
-    transmittance.voxel_size = 0.5;
-    transmittance.occupied_voxels = 7;
-    result.transmittance = transmittance;
+    StagePart transmittance;
+    transmittance.stage = find_stage("transmittance");
+    transmittance.key = "bb";
+    transmittance.arrays = {{&average_transmittance_kind(), 1, {0, 0.25f, 0.5f, 0.75f, 1}}};
     ErrorBar bar;
     bar.vertices = 4;
     bar.inside_strand = 1;
@@ -47,7 +56,8 @@ inline BakeResult small_result() {
     bar.bias = -0.001;
     bar.rmse_ci95 = {0.008, 0.012};
     bar.bias_ci95 = {-0.002, 0};
-    result.error_bar = bar;
+    transmittance.facts = TransmittanceFacts{100, 0.5, 7, 1, bar, nullptr};
+    result.parts.push_back(transmittance);
 
     EnvironmentMap map;
     map.width = 64;
@@ -55,16 +65,22 @@ inline BakeResult small_result() {
     map.source_format = "hdr";
     map.repairs.negative_pixels = 3;
     map.repairs.energy_removed = 0.5;
-    result.environment = map;
+    result.inputs.environment = map;
     IrradianceMaps maps;
     maps.face_size = 4;
     maps.exponent = 64;
     maps.diffuse = counted_cube(4, 0);
     for (int m = 0; m < 3; ++m) maps.specular.push_back(counted_cube(4, 1000.f * float(m + 1)));
     maps.specular_statistics.resize(3);
-    maps.environment_sh_bands = 2;
-    maps.environment_sh = {{1, 2, 3}, {0.1, 0.2, 0.3}, {1e-20, 0, -5}, {7, 8, 9}};
-    result.irradiance = maps;
+    StagePart irradiance;
+    irradiance.stage = find_stage("irradiance");
+    irradiance.key = "dd";
+    irradiance.maps = to_map_set(maps, "kajiya-kay");
+    IrradianceFacts facts;
+    facts.environment_sh_bands = 2;
+    facts.environment_sh = {{1, 2, 3}, {0.1, 0.2, 0.3}, {1e-20, 0, -5}, {7, 8, 9}};
+    irradiance.facts = facts;
+    result.parts.push_back(irradiance);
     result.warnings = {"a warning with \"quotes\""};
     return result;
 }

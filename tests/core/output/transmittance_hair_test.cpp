@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "core/output/transmittance_files.h"
+#include "core/output/hair_colors.h"
 #include "tests/core/output/small_result.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
@@ -11,7 +11,7 @@ namespace {
 TEST(TransmittanceHair, AnIndependentReaderFindsGreyColoursAndNothingElseChanged) {
     const test_support::TemporaryFolder folder;
     const BakeResult result = test_support::small_result();
-    write_transmittance_hair(*result.hair, result.transmittance->average, folder / "");
+    write_transmittance_hair(*result.hair, result.parts[0].arrays[0].values, folder / "");
     // The format as Cem Yuksel describes it: a header of 128 bytes, then segments, points, thickness, transparency and
     // colours as the bits 0 to 4 of the word at byte 12 say.
     const auto python = test_support::run_python(R"(

@@ -24,16 +24,17 @@ TEST(RequestJson, EveryFieldMakesTheRoundTrip) {
     // No value is a default, so a field that is lost on the way shows.
     const std::string text = R"({
         "hair": "a.hair", "environment": "b.hdr", "occluder": "c.obj", "receiver": "d.obj",
-        "strand": {"width": 0.25, "width_scale": 2.5, "opacity": "from_file"},
+        "strand": {"width": 0.25, "width_scale": 2.5, "opacity": "from_file", "time": 1.5},
         "transmittance": {"method": "trace", "directions": 49, "direction_set": "stratified", "seed": 9007199254740991,
                           "voxels": 128, "voxel_size": 0.125, "sh_bands": 2, "bent_cone": true,
                           "opacity_maps": {"layers": 4, "layer_spacing": 1.5, "resolution": 64},
                           "reference_vertices": 7},
-        "irradiance": {"model": "kajiya-kay", "face_size": 8, "specular_maps": 5, "exponent": 12.5, "method": "sh",
+        "fiber": {"model": "kajiya-kay", "kajiya_kay": {"exponent": 12.5}},
+        "environment_settings": {"layout": "latlong", "latlong": "openexr", "rotation_deg": [1.0, 2.0, 3.0],
+                                 "exposure_stops": -1.5, "tint": [0.5, 0.25, 0.125], "invalid_radiance": "clamp"},
+        "irradiance": {"face_size": 8, "specular_maps": 5, "method": "sh",
                        "sh_bands": {"diffuse": 3, "specular": 8}, "sh_error": 0.5, "clamp_negative": false,
-                       "layout": "latlong", "latlong": "openexr", "rotation_deg": [1.0, 2.0, 3.0],
-                       "exposure_stops": -1.5, "tint": [0.5, 0.25, 0.125],
-                       "lights": [{"direction": [0.0, 1.0, 0.0], "irradiance": [1.0, 2.0, 3.0]}], "invalid_radiance": "clamp"},
+                       "lights": [{"direction": [0.0, 1.0, 0.0], "irradiance": [1.0, 2.0, 3.0]}]},
         "outputs": ["hair"]})";
     const BakeRequest request = parsed(text);
     EXPECT_EQ(nlohmann::json::parse(to_json(request)), nlohmann::json::parse(text));
@@ -56,6 +57,29 @@ TEST(RequestJson, FieldsThatAreNotNamedKeepTheirValues) {
     merge_json(request, R"({"hair": null, "irradiance": {"sh_bands": {"diffuse": "auto"}}})", "third");
     EXPECT_FALSE(request.hair.has_value());
     EXPECT_FALSE(request.irradiance.sh_bands_diffuse.has_value());
+}
+
+TEST(RequestJson, FirstPlacesAreTakenWithAWarningEach) {
+    BakeRequest request;
+    const auto warnings =
+        merge_json(request, R"({"irradiance": {"exponent": 5, "tint": [1, 2, 3], "face_size": 8}})", "old.json");
+    EXPECT_EQ(request.irradiance.exponent, 5);
+    EXPECT_EQ(request.environment_settings.tint[2], 3);
+    EXPECT_EQ(warnings, (std::vector<std::string>{
+                            "old.json: irradiance.exponent is deprecated: the field is now fiber.kajiya_kay.exponent",
+                            "old.json: irradiance.tint is deprecated: the field is now environment_settings.tint"}));
+    EXPECT_EQ(set_field(request, "irradiance.latlong", "openexr").size(), 1u);
+    EXPECT_EQ(request.environment_settings.latlong, LatLong::openexr);
+    expect_refused(R"({"irradiance": {"tint": "red"}})", "irradiance.tint",
+                   {"irradiance.tint is \"red\"", "three numbers"});
+}
+
+TEST(RequestJson, AFieldAtBothOfItsPlacesIsRefused) {
+    const std::string twice = "fiber.kajiya_kay.exponent is given twice, also as irradiance.exponent";
+    expect_refused(R"({"fiber": {"kajiya_kay": {"exponent": 5}}, "irradiance": {"exponent": 5}})",
+                   "irradiance.exponent", {twice});
+    expect_refused(R"({"irradiance": {"exponent": 5}, "fiber": {"kajiya_kay": {"exponent": 5}}})",
+                   "fiber.kajiya_kay.exponent", {twice});
 }
 
 TEST(RequestJson, OpacityIsANumberOrFromFile) {
@@ -151,7 +175,7 @@ TEST(SetField, DeepNestingIsRefusedAndUnclosedBracketsAreText) {
 TEST(SetField, TakesPlainTextAndListsWithCommas) {
     BakeRequest request;
     set_field(request, "transmittance.method", "trace");
-    set_field(request, "irradiance.rotation_deg", "0,90,0");
+    EXPECT_TRUE(set_field(request, "environment_settings.rotation_deg", "0,90,0").empty());
     set_field(request, "outputs", "npy,exr");
     EXPECT_EQ(request.transmittance.method, TransmittanceMethod::trace);
     EXPECT_EQ(request.environment_settings.rotation_deg[1], 90);
@@ -186,7 +210,7 @@ TEST(Presets, AreValidRequestsOnceInputsAreGiven) {
             BakeRequest r;
             apply_preset(r, "best");
         },
-        ErrorKind::usage, "preset", {"draft, final, paper"});
+        ErrorKind::usage, "preset", {"draft, final, paper, v1"});
 }
 
 TEST(Presets, PaperIsThePublishedSetting) {

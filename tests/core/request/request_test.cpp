@@ -48,7 +48,7 @@ TEST(Request, NanIsInNoRange) {
     expect_refused(request, "strand.width");
     request = valid();
     request.environment_settings.rotation_deg[1] = std::numeric_limits<double>::infinity();
-    expect_refused(request, "irradiance.rotation_deg");
+    expect_refused(request, "environment_settings.rotation_deg");
 }
 
 TEST(Request, StratifiedSetsWantASquareCount) {
@@ -133,14 +133,15 @@ TEST(Request, EveryEndOfARangeIsAllowedAndBeyondIsNot) {
          [](BakeRequest& r, double v) { r.transmittance.reference_vertices = int(v); }, 0, 100000, 1},
         {"irradiance.face_size", [](BakeRequest& r, double v) { r.irradiance.face_size = int(v); }, 4, 256, 1},
         {"irradiance.specular_maps", [](BakeRequest& r, double v) { r.irradiance.specular_maps = int(v); }, 2, 257, 1},
-        {"irradiance.exponent", [](BakeRequest& r, double v) { r.irradiance.exponent = v; }, 0, 4096, 1e-6},
+        {"fiber.kajiya_kay.exponent", [](BakeRequest& r, double v) { r.irradiance.exponent = v; }, 0, 4096, 1e-6},
         {"irradiance.sh_bands.diffuse", [](BakeRequest& r, double v) { r.irradiance.sh_bands_diffuse = int(v); }, 1,
          128, 1},
         {"irradiance.sh_bands.specular", [](BakeRequest& r, double v) { r.irradiance.sh_bands_specular = int(v); }, 1,
          128, 1},
-        {"irradiance.exposure_stops", [](BakeRequest& r, double v) { r.environment_settings.exposure_stops = v; }, -64,
-         64, 1e-6},
-        {"irradiance.tint", [](BakeRequest& r, double v) { r.environment_settings.tint[2] = v; }, 0, 1e6, 1e-6},
+        {"environment_settings.exposure_stops",
+         [](BakeRequest& r, double v) { r.environment_settings.exposure_stops = v; }, -64, 64, 1e-6},
+        {"environment_settings.tint", [](BakeRequest& r, double v) { r.environment_settings.tint[2] = v; }, 0, 1e6,
+         1e-6},
     };
     for (const Case& c : cases) {
         BakeRequest request = valid();

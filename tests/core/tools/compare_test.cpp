@@ -6,10 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/output/array_files.h"
 #include "core/output/manifest.h"
-#include "core/output/map_files.h"
 #include "core/output/result_folder.h"
-#include "core/output/transmittance_files.h"
 #include "tests/core/output/small_result.h"
 #include "tests/support/temporary_folder.h"
 
@@ -23,9 +22,11 @@ using test_support::TemporaryFolder;
 void write_npy_result(const BakeResult& result, const std::filesystem::path& folder) {
     ResultFolder target(folder);
     std::vector<WrittenFile> files;
-    if (result.transmittance) files = {write_transmittance_npy(result.transmittance->average, target.path())};
-    if (result.irradiance)
-        for (const WrittenFile& file : write_map_npy(*result.irradiance, target.path())) files.push_back(file);
+    for (const StagePart& part : result.parts) {
+        for (const VertexArray& array : part.arrays) files.push_back(write_array_npy(array, target.path()));
+        if (part.maps)
+            for (const WrittenFile& file : write_map_npy(*part.maps, target.path())) files.push_back(file);
+    }
     write_manifest(result, files, target.path());
     target.commit();
 }
@@ -43,8 +44,8 @@ TEST(Compare, AResultEqualsItself) {
 TEST(Compare, GivesTheLargestTheRmsAndTheMeanDifference) {
     const TemporaryFolder folder;
     BakeResult a = small_result(), b = small_result();
-    b.transmittance->average = {0.5f, 0.25f, 0.5f, 0.5f, 1};  // differences 0.5, 0, 0, -0.25, 0
-    b.irradiance->specular[1][0].y += 3;
+    b.parts[0].arrays[0].values = {0.5f, 0.25f, 0.5f, 0.5f, 1};  // differences 0.5, 0, 0, -0.25, 0
+    test_support::irradiance_of(b).maps->lobes[1].cubes[1][0].y += 3;
     write_npy_result(a, folder / "a");
     write_npy_result(b, folder / "b");
     const Json report = Json::parse(compare(folder / "a", folder / "b"));
@@ -63,7 +64,7 @@ TEST(Compare, GivesTheLargestTheRmsAndTheMeanDifference) {
 TEST(Compare, ANanIsNeverMasked) {
     const TemporaryFolder folder;
     BakeResult b = small_result();
-    b.transmittance->average[1] = std::nanf("");
+    b.parts[0].arrays[0].values[1] = std::nanf("");
     write_npy_result(small_result(), folder / "a");
     write_npy_result(b, folder / "b");
     const Json report = Json::parse(compare(folder / "a", folder / "b"));
@@ -74,8 +75,8 @@ TEST(Compare, ANanIsNeverMasked) {
 TEST(Compare, NamesWhatCannotBeCompared) {
     const TemporaryFolder folder;
     BakeResult b = small_result();
-    b.transmittance.reset();
-    b.irradiance->specular.pop_back();
+    b.parts.erase(b.parts.begin());
+    test_support::irradiance_of(b).maps->lobes[1].cubes.pop_back();
     write_npy_result(small_result(), folder / "a");
     write_npy_result(b, folder / "b");
     const Json report = Json::parse(compare(folder / "a", folder / "b"));

@@ -1,10 +1,11 @@
-// The names that a bake was asked by.
+// A bake's request as it would be written again.
+import { in_new_places } from './request_fields.js';
 
 /**
- * The request of a bake's view with those names instead of the digests that the service tells, each in the version that
- * it had: it means the same files, and a bake that is asked for with it follows the same names.
+ * The request of a bake's view. Inputs that the bake refers to by name are named again, each in the version that it
+ * had, so that a bake of this request uses the same files and follows the same names. Fields stand in their new places.
  */
 export function request_by_names({ request, names }) {
     const references = Object.entries(names).map(([field, { path, version }]) => [field, `name:${path}@${version}`]);
-    return { ...request, ...Object.fromEntries(references) };
+    return { ...in_new_places(request), ...Object.fromEntries(references) };
 }

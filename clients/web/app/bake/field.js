@@ -1,7 +1,7 @@
-// One field of the request as the schema describes it: name, unit, range, a line of help, and what is wrong with it.
+// One field of the request as the schema describes it: title, unit, range, help and error message.
 import { html, useState } from '../../vendor/preact.js';
-import { title_words } from '../words.js';
-import { number_part, range_words, takes_null, word_of } from './schema.js';
+import { title_text } from '../name_text.js';
+import { number_part, range_text, takes_null, word_of } from './schema.js';
 
 const to_number = text => (text.trim() === '' ? null : Number(text));
 const shown = value => (typeof value === 'number' ? String(value) : '');
@@ -9,7 +9,7 @@ const shown = value => (typeof value === 'number' ? String(value) : '');
 function NumberInput({ id, schema, value = null, on_change, label, described, invalid }) {
     const part = number_part(schema);
     const [typed, set_typed] = useState('');
-    const text = to_number(typed) === value ? typed : shown(value); // "0.0" on the way to "0.02" stays as it is
+    const text = to_number(typed) === value ? typed : shown(value); // "0.0" stays while the user types "0.02"
     const type = event => {
         set_typed(event.target.value);
         on_change(to_number(event.target.value));
@@ -21,21 +21,21 @@ function NumberInput({ id, schema, value = null, on_change, label, described, in
         onInput=${type} />`;
 }
 
-/** A number, or the word that the schema allows in its place. */
+/** A number, or the word that the schema allows instead, such as auto. */
 function NumberOrWord({ id, schema, value, on_change, described, invalid }) {
     const word = word_of(schema);
     const part = number_part(schema);
     const is_word = value === word;
-    const first = part.maximum > 1 ? 8 : 1; // what stands there when the word is taken away
+    const first = part.maximum > 1 ? 8 : 1; // the value after the word is switched off
     return html`<div class="row">
         <${NumberInput} id=${id} schema=${schema} value=${is_word ? null : value} on_change=${on_change}
             described=${described} invalid=${invalid} />
         <label><input type="checkbox" checked=${is_word}
-            onChange=${event => on_change(event.target.checked ? word : first)} /> ${title_words(word)}</label>
+            onChange=${event => on_change(event.target.checked ? word : first)} /> ${title_text(word)}</label>
     </div>`;
 }
 
-/** What of a fault's place lies below `name`: '' is all of it, null is nothing. */
+/** The rest of a fault's place below `name`: '' means all of it, null means that the fault is elsewhere. */
 function below(place, name) {
     if (place === '' || place === name) return '';
     return place?.startsWith(`${name}.`) ? place.slice(name.length + 1) : null;
@@ -94,7 +94,7 @@ function Lights({ schema, value, on_change, described, place }) {
     </div>`;
 }
 
-// [control, whether it is a group of controls]
+// [component, whether it is a group of inputs]
 function control_of(path, schema) {
     const name = path.at(-1);
     if (name === 'lights') return [Lights, true];
@@ -113,19 +113,23 @@ function Select({ id, schema, value, on_change, described, invalid }) {
 }
 
 function Help({ id, schema, fault }) {
-    const range = schema.enum || schema.items?.enum ? '' : range_words(schema); // lists show what there is
+    const range = schema.enum || schema.items?.enum ? '' : range_text(schema); // lists show the allowed values
     return html`<small id=${`${id}-help`}>${schema.description}${range && ` (${range}.)`}</small>
-        ${fault && html`<small class="problem" id=${`${id}-fault`}>${fault.words}</small>`}`;
+        ${fault && html`<small class="problem" id=${`${id}-fault`}>${fault.message}</small>`}`;
 }
 
 /** "Face size, texels", "SH bands: diffuse". */
 function title_of(path, unit) {
-    const words = path.slice(path.length > 2 ? -2 : -1).map(title_words);
-    const title = words.length > 1 ? `${words[0]}: ${words[1].toLowerCase()}` : words[0];
+    const titles = path.slice(path.length > 2 ? -2 : -1).map(title_text);
+    const title = titles.length > 1 ? `${titles[0]}: ${titles[1].toLowerCase()}` : titles[0];
     return unit && !title.toLowerCase().includes(unit) ? `${title}, ${unit}` : title;
 }
 
-/** path: the field's place in the request; fault: { words, place: the wrong part of the value, '' for all }, if any. */
+/**
+ * path: names of the blocks and of the field; schema: of the field;
+ * fault: { message, place }, undefined if nothing is wrong; place: the wrong part of the value, '' for all of it;
+ * changed: whether the value differs from the preset's.
+ */
 export function Field({ path, schema, value, on_change, fault, changed }) {
     const id = `field-${path.join('-')}`;
     const title = title_of(path, schema['x-unit']);
@@ -138,9 +142,9 @@ export function Field({ path, schema, value, on_change, fault, changed }) {
         return html`<div class=${mark}><label><input id=${id} type="checkbox" role="switch" checked=${value}
             aria-describedby=${described} aria-invalid=${invalid ? 'true' : null}
             onChange=${event => on_change(event.target.checked)} /> ${title}</label>${help}</div>`;
-    const [Control, group] = control_of(path, schema);
+    const [Control, is_group] = control_of(path, schema);
     const parts = path.at(-1) === 'tint' ? ['R', 'G', 'B'] : undefined;
-    if (group)
+    if (is_group)
         return html`<div class=${`${mark} ${Control === Triple ? '' : 'wide'}`}><fieldset><legend>${title}</legend>
             <${Control} ...${common} parts=${parts} />${help}</fieldset></div>`;
     return html`<div class=${mark}><label for=${id}>${title}</label><${Control} ...${common} />${help}</div>`;

@@ -1,9 +1,12 @@
-// Choosing one of the stored models or environments, by picture.
+// The choice of a stored model or environment by its thumbnail, and of the name that the request uses for it.
 import { html } from '../../vendor/preact.js';
 import { label_of, summary } from '../input_facts.js';
 import { Cut } from '../parts.js';
 
-/** value: a digest or ''; inputs: what use_inputs gives; fault: the id of the words that say what is wrong, if any. */
+/**
+ * value: a digest or ''; inputs: of use_inputs; none: label of the choice of no file, if there is one;
+ * fault: id of the element with the error message, if something is wrong.
+ */
 export function Picker({ kind, title, inputs, value, on_change, none, fault }) {
     const { items, more, names, files } = inputs;
     const name = `picker-${title}`;
@@ -27,15 +30,15 @@ export function Picker({ kind, title, inputs, value, on_change, none, fault }) {
     </fieldset>`;
 }
 
-/** How a request asks for the chosen file: by one of `names` (see names_of), or by its digest. */
+/** How the request refers to the chosen file: by one of `names` (see names_of), or by its digest. */
 export function Reference({ title, names, value, on_change }) {
     const id = `reference-${title.replaceAll(' ', '-')}`;
     if (names.length === 0) return null;
-    return html`<div class="field"><label for=${id}>${title}: asked for by</label>
+    return html`<div class="field"><label for=${id}>${title}: reference</label>
         <select id=${id} aria-describedby=${`${id}-help`} onChange=${event => on_change(event.target.value)}>
             ${names.map(name => html`<option key=${name} value=${name} selected=${value === name}>${name}</option>`)}
             <option value="" selected=${!value.startsWith('name:')}>this file</option>
         </select>
-        <small id=${`${id}-help`}>A bake asked for by name can follow the name's new versions.</small>
+        <small id=${`${id}-help`}>A bake that refers to a name can be baked again with the name's new versions.</small>
     </div>`;
 }

@@ -1,38 +1,16 @@
-// Baking a set again under another environment: first what it would cost, then the batch.
+// The button that bakes a set again under another environment, below the forecast of the work.
 import { html, useEffect, useState } from '../../vendor/preact.js';
 import { use_app } from '../hooks.js';
+import { count_text } from '../number_text.js';
 import { ProblemNote } from '../parts.js';
-import { count_words } from '../words.js';
-
-const stage_line = ({ transmittance, irradiance }) =>
-    [
-        count_words(transmittance, 'transmittance'),
-        count_words(irradiance, 'set of irradiance maps', 'sets of irradiance maps'),
-    ].join(', ');
-
-const is_done = ({ bakes, done_bakes }) => bakes === done_bakes;
-
-const forecast_words = forecast =>
-    `${count_words(forecast.bakes, 'bake')}: ` +
-    (is_done(forecast)
-        ? 'all of them are done already.'
-        : `reused are ${stage_line(forecast.reused_stages)}; computed ${stage_line(forecast.computed_stages)}.`);
-
-function Forecast({ forecast }) {
-    return html`<dl class="facts" id="forecast">
-        <div><dt>Bakes</dt><dd>${forecast.bakes}</dd></div>
-        <div><dt>Done already</dt><dd>${forecast.done_bakes}</dd></div>
-        <div><dt>Reused</dt><dd>${stage_line(forecast.reused_stages)}</dd></div>
-        <div><dt>Computed</dt><dd>${stage_line(forecast.computed_stages)}</dd></div>
-    </dl>`;
-}
+import { Forecast, forecast_text, is_done } from './rebake_forecast.js';
 
 /** request: the body of POST /v1/rebakes, or null while it is not complete. */
 export function Rebake({ request, label = 'Re-bake' }) {
     const { api, announce } = use_app();
     const [found, set_state] = useState({});
     const body = request && JSON.stringify(request);
-    const state = found.body === body ? found : {}; // not what another request would take
+    const state = found.body === body ? found : {}; // a forecast of another request is not shown
     useEffect(() => {
         if (!body) return undefined;
         let live = true;
@@ -40,7 +18,7 @@ export function Rebake({ request, label = 'Re-bake' }) {
             forecast => {
                 if (!live) return;
                 set_state({ body, forecast });
-                announce(forecast_words(forecast));
+                announce(forecast_text(forecast));
             },
             problem => live && set_state({ body, problem }),
         );
@@ -56,14 +34,14 @@ export function Rebake({ request, label = 'Re-bake' }) {
         }
     };
     if (!request) return null;
-    return html`<section aria-label="What it takes">
+    return html`<section aria-label="The work it takes">
         <${ProblemNote} problem=${state.problem} />
         ${!state.forecast && !state.problem && html`<p aria-busy="true">Counting what is reused</p>`}
         ${
             state.forecast &&
             html`<${Forecast} forecast=${state.forecast} /><button onClick=${confirm}
                 disabled=${state.busy} aria-busy=${state.busy ? 'true' : null}>
-                ${is_done(state.forecast) ? 'Show' : label} ${count_words(state.forecast.bakes, 'bake')}</button>`
+                ${is_done(state.forecast) ? 'Show' : label} ${count_text(state.forecast.bakes, 'bake')}</button>`
         }
     </section>`;
 }

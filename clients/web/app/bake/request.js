@@ -1,4 +1,4 @@
-// A form's values and the request that they make.
+// The values of the form, and the request made of them.
 import { defaults_of, fields_of } from './schema.js';
 
 export const value_at = (values, path) => path.reduce((part, name) => part?.[name], values);
@@ -12,7 +12,7 @@ export function with_value(values, path, value) {
 
 const is_block = value => typeof value === 'object' && value !== null && !Array.isArray(value);
 
-/** `values` with the fields that `request` gives. */
+/** A copy of `values`, with the values of those fields that `request` has. */
 export function merged(values, request) {
     const result = { ...values };
     for (const [name, value] of Object.entries(request))
@@ -20,16 +20,16 @@ export function merged(values, request) {
     return result;
 }
 
-// What the page itself shows maps, histogram and viewer from.
+// The output that maps, histogram and viewer of the page read.
 const for_this_page = ['raw'];
 
-/** The form's values at its beginning: the defaults, with the output that this page needs. */
+/** The first values of the form: the defaults, and the output that the page reads. */
 export function first_values(schema) {
     const values = defaults_of(schema);
     return { ...values, outputs: [...new Set([...values.outputs, ...for_this_page])] };
 }
 
-/** The request with only those fields that differ from the schema's defaults; outputs and files are always named. */
+/** The request of the fields that differ from the schema's defaults, and of the outputs. */
 export function build_request(schema, values) {
     const defaults = defaults_of(schema);
     let request = {};
@@ -51,15 +51,16 @@ export function differences(schema, a, b) {
 }
 
 /**
- * The names of an input as a request calls them; names: { sha256: [path] }, versions: { path: version }. They hold the
- * version, as a name that has moved since the page asked means another file than the one that is shown; the bake
- * follows the name all the same.
+ * The references to an input by its names: ["name:PATH@VERSION"]. They hold the version, because a name may point at
+ * another file by the time of the request. A bake with such a reference still follows the name.
+ * names: { sha256: [path] }; versions: { path: version }.
  */
 export const names_of = (id, { names, versions }) => (names[id] ?? []).map(path => `name:${path}@${versions[path]}`);
 
 /**
- * What a request calls an input: chosen is { id: digest or '', by: one of names_of, '' for the file itself, or
- * undefined for its first name where it has one }; inputs: what names_of takes.
+ * The request's reference to an input, or null without one.
+ * id: digest of the file or ''; by: one of names_of, '' for the digest, undefined for the first name if there is one;
+ * inputs: { names, versions } of names_of.
  */
 export function reference_to({ id, by }, inputs) {
     if (!id) return null;

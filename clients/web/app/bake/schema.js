@@ -1,18 +1,27 @@
-// The request's JSON schema: what a form shows of it, and whether a value follows it. Of JSON Schema it knows what
-// config/request.schema.json uses.
-import { number_words } from '../words.js';
+// The request's JSON schema: its fields, defaults and ranges, and validation of a value. It supports the part of JSON
+// Schema that config/request.schema.json uses.
+import { number_text } from '../number_text.js';
 
-/** { path: ['irradiance', 'face_size'], schema } of every field below `schema` that is no object of fields itself. */
+/** [name, schema] of the parts of a block; deprecated ones are left out, as the form neither shows nor writes them. */
+const parts_of = schema => Object.entries(schema.properties).filter(([, part]) => !part.deprecated);
+
+/** { path: ['irradiance', 'face_size'], schema } of every field in `schema`, also in blocks within blocks. */
 export function fields_of(schema, path = []) {
-    return Object.entries(schema.properties).flatMap(([name, part]) =>
+    return parts_of(schema).flatMap(([name, part]) =>
         part.properties ? fields_of(part, [...path, name]) : [{ path: [...path, name], schema: part }],
     );
 }
 
+/** Names of the blocks at the top of the schema. */
+export const block_names = schema =>
+    parts_of(schema)
+        .filter(([, part]) => part.properties)
+        .map(([name]) => name);
+
 /** Every field's default, as a request. */
 export function defaults_of(schema) {
     return Object.fromEntries(
-        Object.entries(schema.properties).map(([name, part]) => [
+        parts_of(schema).map(([name, part]) => [
             name,
             part.properties ? defaults_of(part) : structuredClone(part.default ?? null),
         ]),
@@ -21,18 +30,18 @@ export function defaults_of(schema) {
 
 const types_of = schema => [schema.type ?? []].flat();
 
-/** The alternative of a schema that takes numbers, or null. */
+/** The alternative of the schema that allows numbers, or null. */
 export function number_part(schema) {
     if (types_of(schema).some(type => type === 'number' || type === 'integer')) return schema;
     return (schema.anyOf ?? []).find(part => number_part(part)) ?? null;
 }
 
 export const takes_null = schema => types_of(schema).includes('null');
-/** The word that may stand in a number's place ("auto"), or undefined. */
+/** The word that is allowed instead of a number, such as "auto", or undefined. */
 export const word_of = schema => (schema.anyOf ?? []).find(part => 'const' in part)?.const;
 
 /** "16 to 4096", "more than 0, up to 1", "one of a, b". */
-export function range_words(schema) {
+export function range_text(schema) {
     if (schema.enum) return `one of ${schema.enum.join(', ')}`;
     const part = number_part(schema);
     if (part) {
@@ -45,14 +54,14 @@ export function range_words(schema) {
         return `${low} ${range_number(part.maximum)}${whole}${word ? `, or ${word}` : ''}`;
     }
     if (schema.type === 'array' && number_part(schema.items ?? {}))
-        return `${schema.minItems} numbers, each ${range_words(schema.items)}`;
+        return `${schema.minItems} numbers, each ${range_text(schema.items)}`;
     return '';
 }
 
-// 9007199254740991 as it is: a limit is not rounded.
+// Limits are not rounded: 9007199254740991 keeps its digits.
 function range_number(value) {
     if (Math.abs(value) >= 1e16) return value.toExponential().replace('+', '');
-    return Number.isInteger(value) ? String(value) : number_words(value);
+    return Number.isInteger(value) ? String(value) : number_text(value);
 }
 
 function type_fits(type, value) {
@@ -75,24 +84,24 @@ function number_fits(schema, value) {
     );
 }
 
-function in_words(value) {
+function as_text(value) {
     return value === null ? 'empty' : JSON.stringify(value);
 }
 
-/** What does not follow the schema: [{ path: 'irradiance.face_size', words }]. */
+/** Where a value breaks the schema: [{ path: 'irradiance.face_size', message }]. */
 export function faults(schema, value, path = '') {
-    const wrong = words => [{ path, words }];
+    const wrong = message => [{ path, message }];
     const types = types_of(schema);
     if (types.length && !types.some(type => type_fits(type, value)))
-        return wrong(`is ${in_words(value)}; allowed is ${range_words(schema) || types.join(' or ')}`);
+        return wrong(`is ${as_text(value)}; allowed is ${range_text(schema) || types.join(' or ')}`);
     if (schema.enum && !schema.enum.some(one => same(one, value)))
-        return wrong(`is ${in_words(value)}; allowed is ${range_words(schema)}`);
+        return wrong(`is ${as_text(value)}; allowed is ${range_text(schema)}`);
     if ('const' in schema && !same(schema.const, value))
-        return wrong(`is ${in_words(value)}; allowed is ${schema.const}`);
+        return wrong(`is ${as_text(value)}; allowed is ${schema.const}`);
     if (schema.anyOf && !schema.anyOf.some(part => faults(part, value).length === 0))
-        return wrong(`is ${in_words(value)}; allowed is ${range_words(schema)}`);
+        return wrong(`is ${as_text(value)}; allowed is ${range_text(schema)}`);
     if (typeof value === 'number' && !number_fits(schema, value))
-        return wrong(`is ${value}; allowed is ${range_words(schema)}`);
+        return wrong(`is ${value}; allowed is ${range_text(schema)}`);
     if (typeof value === 'string' && value.length < (schema.minLength ?? 0)) return wrong('is empty');
     if (Array.isArray(value)) return array_faults(schema, value, path);
     if (schema.properties && value !== null && typeof value === 'object') return object_faults(schema, value, path);
@@ -102,9 +111,9 @@ export function faults(schema, value, path = '') {
 function array_faults(schema, value, path) {
     const { minItems = 0, maxItems = Infinity } = schema;
     if (value.length < minItems || value.length > maxItems)
-        return [{ path, words: `has ${value.length} entries; allowed are ${minItems} to ${maxItems}` }];
+        return [{ path, message: `has ${value.length} entries; allowed are ${minItems} to ${maxItems}` }];
     if (schema.uniqueItems && new Set(value.map(item => JSON.stringify(item))).size < value.length)
-        return [{ path, words: 'holds something twice' }];
+        return [{ path, message: 'holds something twice' }];
     return schema.items ? value.flatMap((item, i) => faults(schema.items, item, `${path}.${i}`)) : [];
 }
 
@@ -112,10 +121,10 @@ function object_faults(schema, value, path) {
     const of = name => (path ? `${path}.${name}` : name);
     const missing = (schema.required ?? [])
         .filter(name => !(name in value))
-        .map(name => ({ path: of(name), words: 'is missing' }));
+        .map(name => ({ path: of(name), message: 'is missing' }));
     const own = Object.entries(value).flatMap(([name, part]) => {
         if (Object.hasOwn(schema.properties, name)) return faults(schema.properties[name], part, of(name));
-        return schema.additionalProperties === false ? [{ path: of(name), words: 'is not a field' }] : [];
+        return schema.additionalProperties === false ? [{ path: of(name), message: 'is not a field' }] : [];
     });
     return [...missing, ...own];
 }

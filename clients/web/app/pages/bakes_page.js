@@ -1,10 +1,11 @@
-// The queue and what came out of it, newest first.
+// The list of bakes, newest first.
 import { html, useState } from '../../vendor/preact.js';
 import { BakeTable } from '../bake/bake_table.js';
 import { use_inputs } from '../gallery.js';
 import { use_watch } from '../hooks.js';
 import { Cut, Loading, ProblemNote } from '../parts.js';
-import { count_words, most_shown } from '../words.js';
+import { most_shown } from '../list_pages.js';
+import { count_text } from '../number_text.js';
 
 const states = ['queued', 'running', 'done', 'failed', 'cancelled'];
 const page_size = 50;
@@ -37,7 +38,7 @@ export default function BakesPage() {
             ${chosen.size === 2 && html`<a role="button" class="small" href=${`#/view/${[...chosen].join('/')}`}>
                 Compare in the viewer</a>`}
             ${chosen.size > 0 && html`<a role="button" class="small"
-                href=${`#/rebake?bakes=${[...chosen].join(',')}`}>Re-bake ${count_words(chosen.size, 'bake')}</a>`}
+                href=${`#/rebake?bakes=${[...chosen].join(',')}`}>Re-bake ${count_text(chosen.size, 'bake')}</a>`}
         </div>
         <${ProblemNote} problem=${problem} />
         ${!value && !problem && html`<${Loading} what="the bakes" />`}

@@ -1,10 +1,10 @@
-// A batch as it goes.
+// The progress of a batch and its bakes.
 import { html, useEffect } from '../../vendor/preact.js';
 import { BakeTable } from '../bake/bake_table.js';
 import { use_inputs } from '../gallery.js';
 import { use_app, use_watch } from '../hooks.js';
 import { Cut, Facts, Loading, ProblemNote } from '../parts.js';
-import { most_shown } from '../words.js';
+import { most_shown } from '../list_pages.js';
 
 const open = ({ states }) => states.queued + states.running;
 const has_ended = batch => open(batch) === 0;
@@ -16,7 +16,7 @@ export default function BatchPage({ path }) {
     const address = `/v1/batches/${encodeURIComponent(path[1] ?? '')}`;
     const { value: batch, problem } = use_watch(address, 700, has_ended);
     const left = batch ? open(batch) : -1;
-    // The list is asked for until nothing is open, so that its last state is the last one.
+    // The list is watched on its own until all its bakes have ended, so that it shows their last states.
     const { value: list } = use_watch(
         `/v1/bakes?batch=${encodeURIComponent(path[1] ?? '')}&limit=${most_shown}`,
         1000,

@@ -1,5 +1,5 @@
-// Meshes by their names: heads that shadow the hair, and surfaces that it shadows. The service lists no meshes but those
-// that have a name, so a mesh that was sent gets one here.
+// Meshes and their names: heads that shadow the hair, and surfaces that the hair shadows. The service lists only meshes
+// that have a name, so an uploaded mesh is given a name here.
 import { html, useState } from '../../vendor/preact.js';
 import { NameForm } from '../gallery.js';
 import { use_app, use_list } from '../hooks.js';
@@ -7,9 +7,10 @@ import { label_of } from '../input_facts.js';
 import { Cut, Heads, Loading, ProblemNote } from '../parts.js';
 import { UploadPanel } from '../uploads/upload_panel.js';
 import { file_names } from '../uploads/uploads.js';
-import { name_from_file, time_words } from '../words.js';
+import { name_from_file } from '../name_text.js';
+import { time_text } from '../time_text.js';
 
-/** The meshes that this page has sent and that no name points at. */
+/** The meshes that this page has uploaded and that have no name yet. */
 function Nameless({ named, on_named }) {
     const { uploads } = use_app();
     const jobs = uploads.jobs.filter(
@@ -29,7 +30,7 @@ function Named({ names }) {
         <tbody>${names.map(
             ({ path, version, sha256, created }) => html`<tr key=${path}>
             <td><a href=${`#/names/mesh/${path}`}>${path}</a></td><td>${version}</td>
-            <td>${label_of(sha256, {}, files)}</td><td>${time_words(created)}</td></tr>`,
+            <td>${label_of(sha256, {}, files)}</td><td>${time_text(created)}</td></tr>`,
         )}</tbody>
     </table></div>`;
 }

@@ -1,4 +1,4 @@
-// A name with its versions: a new one, what followed the old ones, and baking that again.
+// A name: its versions, a new version, and the bakes that use it, which can be baked again with the newest version.
 import { html, useMemo, useState } from '../../vendor/preact.js';
 import { BakeTable } from '../bake/bake_table.js';
 import { request_by_names } from '../bake/by_names.js';
@@ -8,23 +8,24 @@ import { use_app, use_json, use_list } from '../hooks.js';
 import { label_of } from '../input_facts.js';
 import { Cut, Heads, Loading, ProblemNote } from '../parts.js';
 import { file_names } from '../uploads/uploads.js';
-import { count_words, time_words } from '../words.js';
+import { count_text } from '../number_text.js';
+import { time_text } from '../time_text.js';
 
 function Versions({ versions, inputs }) {
     return html`<div class="scroll" tabindex="0" role="region" aria-label="Versions"><table class="striped">
         <${Heads} titles=${['Version', 'File', 'Note', 'By', 'When']} />
         <tbody>${versions.map(
             one => html`<tr key=${one.version}><td>${one.version}</td><td>${label_of(one.sha256, {}, inputs.files)}</td>
-            <td>${one.note}</td><td>${one.token}</td><td>${time_words(one.created)}</td></tr>`,
+            <td>${one.note}</td><td>${one.token}</td><td>${time_text(one.created)}</td></tr>`,
         )}</tbody>
     </table></div>`;
 }
 
-/** The fields of a request that can ask for a name of this kind. */
+/** The fields of a request that can refer to a name of a kind. */
 const fields = { model: ['hair'], environment: ['environment'], mesh: ['occluder', 'receiver'] };
 
-/** Those of them by which the bake asked for the name. */
-const asked_by = (bake, { kind, path }) => fields[kind].filter(field => bake.names[field]?.path === path);
+/** The fields in which a bake refers to the name. */
+const fields_with = (bake, { kind, path }) => fields[kind].filter(field => bake.names[field]?.path === path);
 
 function NewVersion({ kind, name, inputs, on_change }) {
     const { api, announce } = use_app();
@@ -45,7 +46,7 @@ function NewVersion({ kind, name, inputs, on_change }) {
     };
     const others = (inputs.items ?? []).filter(({ id }) => id !== name.sha256);
     if (others.length === 0)
-        return html`<p>Nothing else is stored that it could point at: <a href=${`#/${kind}s`}>send a file</a>.</p>`;
+        return html`<p>No other file is stored that the name could point at: <a href=${`#/${kind}s`}>send one</a>.</p>`;
     return html`<form onSubmit=${put} class="toolbar">
         <label class="grow">File <select name="sha256" required>
             ${others.map(({ id }) => html`<option key=${id} value=${id}>${label_of(id, inputs.names, inputs.files)}
@@ -56,7 +57,7 @@ function NewVersion({ kind, name, inputs, on_change }) {
     </form>`;
 }
 
-/** Models and meshes are baked again one by one: the service's re-bake changes environments. */
+/** Bakes again with a new model or mesh, one request each: the service's re-bake changes environments only. */
 function BakeAgain({ name, bakes }) {
     const { api, announce } = use_app();
     const [problem, set_problem] = useState(null);
@@ -64,16 +65,16 @@ function BakeAgain({ name, bakes }) {
         try {
             for (const bake of bakes) {
                 const request = request_by_names(await api.json(`/v1/bakes/${bake.id}`));
-                const newest = asked_by(bake, name).map(field => [field, `name:${name.path}@${name.version}`]);
+                const newest = fields_with(bake, name).map(field => [field, `name:${name.path}@${name.version}`]);
                 await api.post('/v1/bakes', { ...request, ...Object.fromEntries(newest) });
             }
-            announce(`${count_words(bakes.length, 'bake')} asked for.`);
+            announce(`${count_text(bakes.length, 'bake')} queued.`);
             location.hash = '#/bakes';
         } catch (failure) {
             set_problem(failure);
         }
     };
-    return html`<button onClick=${again}>Bake ${count_words(bakes.length, 'bake')} with version ${name.version}
+    return html`<button onClick=${again}>Bake ${count_text(bakes.length, 'bake')} with version ${name.version}
         </button><${ProblemNote} problem=${problem} />`;
 }
 
@@ -81,17 +82,17 @@ function Followers({ kind, name }) {
     const models = use_inputs('model');
     const environments = use_inputs('environment');
     const { items, more, problem } = use_list(`/v1/bakes?name=${encodeURIComponent(name.path)}`, 'bakes');
-    const bakes = useMemo(() => (items ?? []).filter(bake => asked_by(bake, name).length > 0), [items]);
-    const old = bakes.filter(bake => asked_by(bake, name).some(field => bake.names[field].version < name.version));
+    const bakes = useMemo(() => (items ?? []).filter(bake => fields_with(bake, name).length > 0), [items]);
+    const old = bakes.filter(bake => fields_with(bake, name).some(field => bake.names[field].version < name.version));
     if (problem) return html`<${ProblemNote} problem=${problem} />`;
     if (!items) return html`<${Loading} what="the bakes" />`;
     const outdated = old.filter(bake => bake.model);
-    // Of more than are listed the service knows all itself; those that follow the newest version are done already.
+    // Where the list is cut off, the service finds the bakes by the name; those of the newest version are done already.
     const again = more ? { name: name.path } : { bakes: outdated.map(({ id }) => id) };
     return html`<div>
         <p id="followers">
-            ${more && 'At least '}${count_words(bakes.length, 'bake')} asked for this name, ${old.length} of them for an
-            older version.</p>
+            ${more && 'At least '}${count_text(bakes.length, 'bake')}
+            ${bakes.length === 1 ? ' uses' : ' use'} this name, ${old.length} of them in an older version.</p>
         ${
             kind === 'environment' &&
             outdated.length > 0 &&
@@ -108,7 +109,7 @@ function OneName({ kind, path, inputs }) {
     const { value: name, problem, reload } = use_json(name_address(kind, path));
     if (!name) return problem ? html`<${ProblemNote} problem=${problem} />` : html`<${Loading} what="the name" />`;
     return html`<div>
-        <p>A request asks for it as <code>"${fields[kind][0]}": "name:${name.path}"</code>,
+        <p>A request refers to it as <code>"${fields[kind][0]}": "name:${name.path}"</code>,
             or for one version as <code>name:${name.path}@${name.version}</code>.</p>
         <h2>New version</h2>
         ${
@@ -119,7 +120,7 @@ function OneName({ kind, path, inputs }) {
         }
         <h2>Versions</h2>
         <${Versions} versions=${name.versions} inputs=${inputs} />
-        <h2>What follows it</h2>
+        <h2>Bakes that use it</h2>
         <${Followers} key=${name.version} kind=${kind} name=${name} />
     </div>`;
 }

@@ -1,11 +1,12 @@
-// One bake: progress until it has ended, then its result.
+// The page of one bake: its progress until it has ended, then its result.
 import { html, useEffect, useState } from '../../vendor/preact.js';
-import { bake_words } from '../bake/bake_table.js';
-import { Progress, use_bake } from '../bake/live_bake.js';
+import { bake_title } from '../bake/bake_table.js';
+import { BakeProgress } from '../bake/bake_progress.js';
+import { use_bake } from '../bake/live_bake.js';
 import { use_inputs } from '../gallery.js';
 import { Loading, ProblemNote } from '../parts.js';
 
-/** The result's part of the page is loaded when there is a result. */
+/** Loads the module of the result, which only a finished bake needs. */
 function Result({ bake }) {
     const [state, set_state] = useState({});
     useEffect(() => {
@@ -24,9 +25,9 @@ export default function OneBakePage({ path }) {
     const environments = use_inputs('environment');
     if (!bake) return problem ? html`<${ProblemNote} problem=${problem} />` : html`<${Loading} what="the bake" />`;
     return html`<div>
-        <p>${bake_words(bake, models, environments)}</p>
+        <p>${bake_title(bake, models, environments)}</p>
         <${ProblemNote} problem=${problem} />
-        <${Progress} bake=${bake} again=${again} />
+        <${BakeProgress} bake=${bake} on_change=${again} />
         ${bake.state === 'done' && html`<${Result} bake=${bake} />`}
         <details><summary>The request</summary><pre tabindex="0">${JSON.stringify(bake.request, null, 2)}</pre>
             </details>

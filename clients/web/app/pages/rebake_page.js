@@ -1,4 +1,4 @@
-// A new environment for a whole set of bakes.
+// The page that bakes a set of bakes again under another environment.
 import { html, useState } from '../../vendor/preact.js';
 import { Picker } from '../bake/picker.js';
 import { Rebake } from '../bake/rebake.js';
@@ -6,7 +6,7 @@ import { use_inputs } from '../gallery.js';
 import { use_list } from '../hooks.js';
 import { label_of } from '../input_facts.js';
 import { Cut, ProblemNote } from '../parts.js';
-import { count_words } from '../words.js';
+import { count_text } from '../number_text.js';
 
 function OldEnvironment({ inputs, value, on_change }) {
     return html`<label>Environment <select onChange=${event => on_change(event.target.value)}>
@@ -25,7 +25,7 @@ function OldName({ value, on_change }) {
     </select></label><${Cut} more=${more} />`;
 }
 
-/** The part of the request that says which bakes, or null. */
+/** The part of the request that selects the bakes, or null while nothing is selected. */
 function source_of(how, { bakes, replaces, name }) {
     if (how === 'bakes') return bakes.length ? { bakes } : null;
     if (how === 'replaces') return replaces ? { replaces: `sha256:${replaces}` } : null;
@@ -40,17 +40,17 @@ export default function RebakePage({ query }) {
     const [name, set_name] = useState(query.name ?? '');
     const [target, set_target] = useState('');
     const source = source_of(how, { bakes, replaces, name });
-    const ways = [
-        ...(bakes.length ? [['bakes', `The ${count_words(bakes.length, 'chosen bake')}`]] : []),
+    const selections = [
+        ...(bakes.length ? [['bakes', `The ${count_text(bakes.length, 'chosen bake')}`]] : []),
         ['replaces', 'Every bake under an environment'],
-        ['name', 'Every bake that asked for an environment by name'],
+        ['name', 'Every bake that refers to an environment by a name'],
     ];
     return html`<div>
         <p>The transmittance does not depend on the lighting: it is reused, and only
             irradiance maps are computed, once for all models with the same settings.</p>
         <fieldset><legend><strong>What to bake again</strong></legend>
-            ${ways.map(([value, words]) => html`<label key=${value}><input type="radio" name="how"
-                checked=${how === value} onChange=${() => set_how(value)} /> ${words}</label>`)}
+            ${selections.map(([value, label]) => html`<label key=${value}><input type="radio" name="how"
+                checked=${how === value} onChange=${() => set_how(value)} /> ${label}</label>`)}
         </fieldset>
         ${how === 'replaces' && html`<${OldEnvironment} inputs=${environments} value=${replaces}
             on_change=${set_replaces} />`}

@@ -1,10 +1,10 @@
-// Where the viewer is mounted; its module brings three.js and is loaded only here.
+// The page of the viewer. The viewer's module imports three.js, so it is loaded only here.
 import { html, useEffect, useState } from '../../vendor/preact.js';
-import { bake_words } from '../bake/bake_table.js';
+import { bake_title } from '../bake/bake_table.js';
 import { use_inputs } from '../gallery.js';
 import { use_app } from '../hooks.js';
 import { Loading } from '../parts.js';
-import { short_digest } from '../words.js';
+import { short_digest } from '../name_text.js';
 
 export default function ViewPage({ path }) {
     const { api } = use_app();
@@ -21,6 +21,6 @@ export default function ViewPage({ path }) {
     if (!left) return html`<p>Which bake? <a href="#/bakes">Choose one</a>.</p>`;
     if (state.error) return html`<p role="alert">The viewer could not be loaded: ${state.error.message}</p>`;
     if (!state.ViewerPage) return html`<${Loading} what="the viewer" />`;
-    const words = bake => `${short_digest(bake.id)}: ${bake_words(bake, models, environments)}`;
-    return html`<${state.ViewerPage} left=${left} right=${right} api=${api} words=${words} />`;
+    const title = bake => `${short_digest(bake.id)}: ${bake_title(bake, models, environments)}`;
+    return html`<${state.ViewerPage} left=${left} right=${right} api=${api} title=${title} />`;
 }

@@ -1,4 +1,4 @@
-// Where a cube map's texels are in a net and in a lat-long picture. Faces +X -X +Y -Y +Z -Z in OpenGL orientation.
+// Layouts of a cube map as a picture: net and lat-long. Faces are +X -X +Y -Y +Z -Z in OpenGL orientation.
 
 export const face_names = ['+X', '-X', '+Y', '-Y', '+Z', '-Z'];
 
@@ -51,7 +51,7 @@ export function latlong_direction(x, y, width, height) {
     return [Math.sin(theta) * Math.cos(phi), Math.cos(theta), Math.sin(theta) * Math.sin(phi)];
 }
 
-/** How a map of n x n x 6 is laid out as a picture: { width, height, texel(x, y) }. */
+/** The layout of a map of n x n x 6 as a picture: { width, height, texel(x, y) }. kind: 'net' or 'latlong'. */
 export function layout_of(kind, n) {
     if (kind === 'net') return { width: 4 * n, height: 3 * n, texel: (x, y) => net_texel(x, y, n) };
     const width = 16 * n;

@@ -1,13 +1,13 @@
-// How A is spread over the vertices.
+// The histogram of A over the vertices, with mean, median and range.
 import { html, useEffect, useRef, useState } from '../../vendor/preact.js';
 import { use_app } from '../hooks.js';
 import { Facts, Loading, ProblemNote } from '../parts.js';
-import { count_words, number_words } from '../words.js';
-import { half_values } from './half.js';
+import { count_text, number_text } from '../number_text.js';
+import { half_values } from '../../viewer/half_float.js';
 
 const bins = 50;
 
-/** Counts of values of [0, 1] in equal bins, and a few of their numbers. */
+/** Statistics of values in [0, 1]: { counts in equal bins, mean, low, median, high }; low to high holds nine tenths. */
 export function spread(values) {
     const counts = new Array(bins).fill(0);
     let sum = 0;
@@ -20,7 +20,7 @@ export function spread(values) {
     return { counts, mean: sum / values.length, low: part(0.05), median: part(0.5), high: part(0.95) };
 }
 
-/** A of every vertex: of strands.bin, only the array that holds it is fetched. */
+/** A of every vertex. Only the array that holds it is fetched from strands.bin. */
 async function load_transmittance(api, bake) {
     const page = await api.json(api.file_url(bake, 'strands.json'));
     const { offset, bytes } = page.arrays.find(({ name }) => name === 'tangent_and_transmittance');
@@ -28,7 +28,7 @@ async function load_transmittance(api, bake) {
         headers: { Range: `bytes=${offset}-${offset + bytes - 1}` },
     });
     const buffer = await reply.arrayBuffer();
-    const from = reply.status === 206 ? 0 : offset; // a proxy may not do ranges
+    const from = reply.status === 206 ? 0 : offset; // a proxy may ignore ranges and send all
     return half_values(new Uint16Array(buffer, from, bytes / 2), 3, 4);
 }
 
@@ -73,7 +73,7 @@ async function draw(parent, counts) {
     );
 }
 
-/** Whether the system asks for dark; a change draws anew what has its colours from the style. */
+/** Whether the system's colour scheme is dark; the component is drawn again when that changes. */
 function use_dark() {
     const query = matchMedia('(prefers-color-scheme: dark)');
     const [dark, set_dark] = useState(query.matches);
@@ -85,7 +85,7 @@ function use_dark() {
     return dark;
 }
 
-/** Whether the element of `ref` has come near what is seen, once it has. */
+/** Whether the element of `ref` has been near the visible part of the page. */
 function use_seen(ref) {
     const [seen, set_seen] = useState(false);
     useEffect(() => {
@@ -99,7 +99,7 @@ function use_seen(ref) {
     return seen;
 }
 
-/** A of a large groom is many megabytes: it is fetched when somebody scrolls to it. */
+/** A of a large groom is many megabytes, so it is fetched when the user scrolls to it. */
 export function Histogram({ bake }) {
     const place = useRef(null);
     const seen = use_seen(place);
@@ -137,12 +137,12 @@ function Chart({ bake }) {
     if (problem) return html`<${ProblemNote} problem=${problem} />`;
     if (!numbers) return html`<${Loading} what="the transmittance" />`;
     return html`<div>
-        <div class="chart" ref=${parent} role="img" aria-label="Histogram of A; its numbers stand below"></div>
+        <div class="chart" ref=${parent} role="img" aria-label="Histogram of A; its statistics are listed below"></div>
         <${Facts} rows=${[
-            ['Vertices', count_words(count, 'vertex', 'vertices')],
-            ['Mean of A', number_words(numbers.mean)],
-            ['Median', number_words(numbers.median)],
-            ['Nine tenths lie in', `${number_words(numbers.low)} to ${number_words(numbers.high)}`],
+            ['Vertices', count_text(count, 'vertex', 'vertices')],
+            ['Mean of A', number_text(numbers.mean)],
+            ['Median', number_text(numbers.median)],
+            ['Nine tenths lie in', `${number_text(numbers.low)} to ${number_text(numbers.high)}`],
         ]} />
     </div>`;
 }

@@ -1,5 +1,5 @@
-// The irradiance maps of a bake as maps.f16 and maps.json hold them.
-import { from_half } from '../../viewer/half.js';
+// The irradiance maps of a bake, read from maps.f16 and maps.json.
+import { from_half } from '../../viewer/half_float.js';
 
 export class MapSet {
     /** page: maps.json; buffer: maps.f16 */
@@ -8,7 +8,7 @@ export class MapSet {
         this.scale = page.scale;
         this.units = page.units;
         this.maps = page.maps;
-        this.halves = new Uint16Array(buffer); // little-endian, as every machine that a browser runs on
+        this.halves = new Uint16Array(buffer); // little-endian, as is every machine that runs a browser
     }
 
     /** Linear RGB of a texel of map `m`. */
@@ -17,7 +17,7 @@ export class MapSet {
         return [0, 1, 2].map(channel => from_half(this.halves[at + channel]) * this.scale);
     }
 
-    /** The stops that bring the brightest texel of map `m` to just below white. */
+    /** The exposure, in stops, at which the brightest texel of map `m` is just below white. */
     exposure(m) {
         let most = 0;
         for (let face = 0; face < 6; ++face)
@@ -38,7 +38,7 @@ export async function load_maps(api, bake) {
     return new MapSet(page, await reply.arrayBuffer());
 }
 
-/** Linear value in [0, 1] -> byte of sRGB; beyond is clipped. */
+/** The sRGB byte of a linear value; values outside [0, 1] are clipped. */
 export function srgb_byte(value) {
     if (!(value > 0)) return 0;
     if (value >= 1) return 255;

@@ -1,16 +1,16 @@
-// The maps as pictures: net or lat-long, any of them, at any exposure, with the value under the pointer.
+// The irradiance maps as pictures: net or lat-long, at any exposure, with the value under the pointer.
 import { html, useEffect, useMemo, useRef, useState } from '../../vendor/preact.js';
-import { from_half } from '../../viewer/half.js';
+import { from_half } from '../../viewer/half_float.js';
 import { use_app } from '../hooks.js';
 import { Facts, Loading, ProblemNote } from '../parts.js';
-import { number_words } from '../words.js';
+import { number_text } from '../number_text.js';
 import { face_names, latlong_direction, layout_of, texel_direction, texel_of } from './cube.js';
 import { load_maps, srgb_byte } from './map_set.js';
 
 const most_stops = 32; // as in the viewer
 const lat_long_width = 1024; // at most
 
-/** As layout_of, but a lat-long picture of large maps has fewer pixels than would show every texel. */
+/** As layout_of, but a lat-long picture is at most 1024 pixels wide, also where it then leaves out texels. */
 function picture_layout(kind, n) {
     const width = 16 * n;
     if (kind === 'net' || width <= lat_long_width) return layout_of(kind, n);
@@ -22,7 +22,7 @@ function picture_layout(kind, n) {
     };
 }
 
-/** For every pixel the texel's number in a map, -1 outside of the faces: worked out once, not at every exposure. */
+/** The index of each pixel's texel in a map, -1 outside of the faces. It is computed once for all exposures. */
 function texel_numbers({ width, height, texel }, n) {
     const numbers = new Int32Array(width * height);
     for (let y = 0, at = 0; y < height; ++y)
@@ -33,11 +33,11 @@ function texel_numbers({ width, height, texel }, n) {
     return numbers;
 }
 
-/** Half float -> byte of sRGB, for all of them. */
+/** The sRGB byte of every half float, by its bits. */
 function byte_table(gain) {
     const bytes = new Uint8Array(65536);
     for (let bits = 0; bits < 0x7c00; ++bits) bytes[bits] = srgb_byte(from_half(bits) * gain);
-    bytes[0x7c00] = 255; // infinite; negative and no numbers stay black
+    bytes[0x7c00] = 255; // infinite; negative values and NaN stay black
     return bytes;
 }
 
@@ -61,9 +61,9 @@ function Readout({ set, m, texel }) {
     const value = set.value(m, texel);
     const direction = texel_direction(texel, set.face_size);
     return html`<div class="readout"><${Facts} rows=${[
-        ['Value, linear RGB', html`<output id="texel-value">${value.map(x => number_words(x, 5)).join(', ')}</output>`],
+        ['Value, linear RGB', html`<output id="texel-value">${value.map(x => number_text(x, 5)).join(', ')}</output>`],
         ['Texel', `${face_names[texel.face]}, column ${texel.i}, row ${texel.j}`],
-        ['Tangent', direction.map(x => number_words(x, 3)).join(', ')],
+        ['Tangent', direction.map(x => number_text(x, 3)).join(', ')],
         ['Units', set.units],
     ]} /></div>`;
 }

@@ -1,50 +1,26 @@
-// What a finished bake holds.
+// The page of a finished bake: its maps, transmittance, accuracy, timings and files.
 import { html } from '../../vendor/preact.js';
 import { use_app, use_json } from '../hooks.js';
+import { title_text } from '../name_text.js';
+import { bytes_text } from '../number_text.js';
 import { Facts, Loading, ProblemNote, Warnings } from '../parts.js';
-import { bytes_words, count_words, number_words, seconds_words, title_words } from '../words.js';
+import { duration_text } from '../time_text.js';
+import { accuracy_rows } from './accuracy.js';
 import { Downloads } from './downloads.js';
 import { Histogram } from './histogram.js';
 import { MapView } from './map_view.js';
 
-const interval = ([low, high]) => `${number_words(low, 3)} to ${number_words(high, 3)}`;
-
-function ErrorBars({ manifest }) {
-    const bar = manifest.error_bar;
-    const maps = manifest.irradiance;
-    const rows = [];
-    if (bar?.vertices === 0)
-        rows.push(['A against traced strands', 'not measured: every vertex drawn lies inside another strand']);
-    else if (bar)
-        rows.push(
-            ['A against traced strands, RMSE', `${number_words(bar.rmse, 3)} (95 %: ${interval(bar.ci95.rmse)})`],
-            ['Bias', `${number_words(bar.bias, 3)} (95 %: ${interval(bar.ci95.bias)})`],
-            [
-                'Measured with',
-                `${count_words(bar.vertices, 'vertex', 'vertices')}, ${count_words(bar.directions, 'direction')} each`,
-            ],
-        );
-    if (maps?.interpolation_bound_relative !== undefined)
-        rows.push([
-            'Between specular maps, at most',
-            `${number_words(100 * maps.interpolation_bound_relative, 3)} % of the largest value`,
-        ]);
-    if (maps?.sh)
-        rows.push(
-            ...Object.entries(maps.sh)
-                .filter(([, value]) => typeof value === 'number')
-                .map(([name, value]) => [title_words(name), number_words(value, 3)]),
-        );
-    if (rows.length === 0) return null;
-    return html`<h2>How good it is</h2><${Facts} rows=${rows} />`;
+function Accuracy({ manifest }) {
+    const rows = accuracy_rows(manifest);
+    return rows.length > 0 && html`<h2>Accuracy</h2><${Facts} rows=${rows} />`;
 }
 
 function Timings({ manifest }) {
     const rows = Object.entries(manifest.timings_s ?? {}).map(([name, seconds]) => [
-        title_words(name),
-        seconds_words(seconds),
+        title_text(name),
+        duration_text(seconds),
     ]);
-    if (manifest.peak_memory_bytes) rows.push(['Peak memory', bytes_words(manifest.peak_memory_bytes)]);
+    if (manifest.peak_memory_bytes) rows.push(['Peak memory', bytes_text(manifest.peak_memory_bytes)]);
     if (manifest.measured?.threads) rows.push(['Threads', String(manifest.measured.threads)]);
     return html`<h2>Time and memory</h2><${Facts} rows=${rows} />`;
 }
@@ -54,7 +30,7 @@ function Previews({ bake, manifest }) {
     const sheets = bake.files.filter(({ name }) => /^preview_\w+\.png$/.test(name));
     const size = name => manifest.files.find(file => file.name === name)?.shape ?? []; // rows, columns
     return html`<div class="previews">${sheets.map(
-        ({ name }) => html`<details key=${name}><summary>Contact sheet: ${title_words(name.slice(8, -4))}</summary>
+        ({ name }) => html`<details key=${name}><summary>Contact sheet: ${title_text(name.slice(8, -4))}</summary>
         <img src=${api.file_url(bake.id, name)} height=${size(name)[0]} width=${size(name)[1]}
             alt=${`Contact sheet of the ${name.slice(8, -4)}`} loading="lazy" /></details>`,
     )}</div>`;
@@ -83,7 +59,7 @@ export function Result({ bake }) {
         ${bake.model && html`<h2>Transmittance A</h2>${has('strands.bin') ? html`<${Histogram}
             bake=${bake.id} />` : without_raw}`}
         <${Previews} bake=${bake} manifest=${manifest} />
-        <${ErrorBars} manifest=${manifest} />
+        <${Accuracy} manifest=${manifest} />
         <${Timings} manifest=${manifest} />
         <h2>Files</h2>
         <${Downloads} files=${bake.files} contents=${contents} />

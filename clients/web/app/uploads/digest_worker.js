@@ -1,5 +1,5 @@
-// Digests one file after the other beside the page, so that it stays responsive. Not by WebCrypto: that wants a file in
-// one piece, and is absent where a page comes over plain HTTP.
+// A worker that computes the SHA-256 digest of one file after the other, so that the page stays responsive. WebCrypto
+// does not do: it takes a file in one piece only, and is missing where the page comes over plain HTTP.
 import { sha256 } from '../../vendor/hashes/sha2.js';
 
 const piece = 4 << 20;

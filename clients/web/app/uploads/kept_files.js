@@ -1,5 +1,5 @@
-// Files whose sending has not ended, in IndexedDB, so that a reload goes on with them. Where that is not possible (no
-// room, a private window), the same file picked again goes on as well.
+// Files of unfinished uploads, kept in IndexedDB so that a reload resumes them. Where they cannot be kept (no room, a
+// private window), picking the same file again resumes its upload too.
 
 const store_name = 'files';
 

@@ -1,9 +1,9 @@
-// Sends one file in pieces that go on after a lost connection or a reload (tus-js-client remembers upload addresses in
-// localStorage, by the file's digest).
-import { is_turned_away, pause, wait_ms_of } from '../patience.js';
+// The upload of one file in pieces. It resumes after a lost connection or a reload: tus-js-client keeps addresses of
+// uploads in localStorage, by the file's digest.
+import { is_turned_away, pause, wait_ms_of } from '../retry.js';
 
 const piece = 8 << 20;
-/** Before one try after the other; the count begins anew when something was sent. */
+/** The pauses before each further try; the count starts again when a piece was sent. */
 export const delays_ms = [0, 1000, 2000, 4000, 8000, 15000, 30000, 30000, 30000, 30000];
 
 let library = null;
@@ -23,12 +23,12 @@ function load_library() {
     return library;
 }
 
-/** What was answered last; nothing where the connection was lost. */
+/** The last reply, undefined when the connection was lost. */
 const reply_of = error => error.originalResponse ?? error.causingError?.reply;
 
 /**
- * Worth another try: no answer at all, a conflict with a request that is still being read, what was turned away for
- * now, a fault of the server.
+ * Whether another try may succeed: after no reply at all, a conflict with a request that the service still reads, a
+ * reply of is_turned_away, or a fault of the server.
  */
 function may_pass(error) {
     const status = reply_of(error)?.getStatus() ?? 0;
@@ -36,20 +36,20 @@ function may_pass(error) {
 }
 
 /**
- * Waits as long as an answer asks for that passes by itself, then fails with it. tus-js-client knows no Retry-After;
- * and where it asks how much of an upload the service has, it takes such an answer for an upload that is gone and sends
- * all of the file anew.
+ * For a reply after which another try may succeed: waits for the time of its Retry-After and throws it as an Error.
+ * tus-js-client ignores Retry-After. And if such a reply answers its question how much of the file the service has, it
+ * concludes that the upload is gone and sends the whole file again.
  */
 async function wait_when_turned_away(reply, on_wait, signal) {
     const status = reply.getStatus();
     if (!is_turned_away(status) && status < 500) return;
     const error = Object.assign(new Error(`status ${status}`), { reply });
-    if (!signal.aborted) on_wait(words_of(error));
+    if (!signal.aborted) on_wait(message_of(error));
     await pause(wait_ms_of(reply.getHeader('Retry-After')), signal);
     throw error;
 }
 
-function words_of(error) {
+function message_of(error) {
     const reply = error.reply ?? reply_of(error);
     if (!reply) return 'The connection was lost and did not come back.';
     try {
@@ -59,7 +59,7 @@ function words_of(error) {
     }
 }
 
-// A browser that has no room left for the addresses sends nevertheless; only a reload cannot go on.
+// Without room for the addresses the upload works all the same, but a reload cannot resume it.
 function lenient(storage) {
     return {
         findAllUploads: () => storage.findAllUploads(),
@@ -87,27 +87,29 @@ const options_of = (tus, file, sha256) => ({
 });
 
 /**
- * Resolves when the service has the whole file. on_progress(bytes); on_wait(words): why it is asked again later;
- * aborting `signal` ends the upload there too.
+ * Uploads a file. Resolves when the service has all of it.
+ * on_progress(bytes): called with the number of bytes sent so far;
+ * on_wait(message): called with the reason when a request is repeated later;
+ * signal: aborting it ends the upload, also on the service.
  */
 export async function send_file(file, sha256, { on_progress, on_wait, signal }) {
     const tus = await load_library();
     signal.throwIfAborted();
     await new Promise((resolve, reject) => {
-        const end = () => upload.abort(true).catch(() => {}); // an upload that stays is removed when it expires
+        const end = () => upload.abort(true).catch(() => {}); // the service removes a remaining upload when it expires
         const upload = new tus.Upload(file, {
             ...options_of(tus, file, sha256),
             onProgress: on_progress,
             onSuccess: resolve,
             onAfterResponse: (_, reply) => wait_when_turned_away(reply, on_wait, signal),
             onError: error =>
-                reject(Object.assign(new Error(words_of(error)), { status: reply_of(error)?.getStatus() })),
+                reject(Object.assign(new Error(message_of(error)), { status: reply_of(error)?.getStatus() })),
             onUploadUrlAvailable: () => {
                 if (signal.aborted) end();
             },
         });
         signal.addEventListener('abort', () => {
-            if (upload.url) end(); // else it is just being made and has no address yet
+            if (upload.url) end(); // without a URL the upload is still being created
             reject(signal.reason);
         });
         upload.findPreviousUploads().then(earlier => {
@@ -118,7 +120,7 @@ export async function send_file(file, sha256, { on_progress, on_wait, signal }) 
     });
 }
 
-/** Ends what an earlier send_file of the file left on the service. */
+/** Deletes an unfinished upload of the file from the service. */
 export async function end_upload(file, sha256) {
     const tus = await load_library();
     const upload = new tus.Upload(file, options_of(tus, file, sha256));

@@ -1,7 +1,7 @@
-// Where files are dropped or picked, and how far each is.
+// The panel where files are dropped or picked, with the progress of each upload.
 import { html, useEffect, useRef, useState } from '../../vendor/preact.js';
 import { use_app } from '../hooks.js';
-import { bytes_words } from '../words.js';
+import { bytes_text } from '../number_text.js';
 
 function use_jobs(kind) {
     const { uploads } = use_app();
@@ -10,10 +10,10 @@ function use_jobs(kind) {
     return uploads.jobs.filter(job => job.kind === kind);
 }
 
-const phase_words = {
+const phase_texts = {
     waiting: () => 'waits for the files before it',
-    digesting: () => 'its digest is being made, to see whether the service has it',
-    sending: job => `${bytes_words(job.done)} of ${bytes_words(job.file.size)} sent`,
+    digesting: () => 'computing its digest, to see whether the service has the file',
+    sending: job => `${bytes_text(job.done)} of ${bytes_text(job.file.size)} sent`,
     reading: () => 'the service reads it',
     stored: job => (job.known ? 'the service had it already: nothing was sent' : 'stored'),
     failed: job => job.problem,
@@ -26,9 +26,9 @@ function Job({ job }) {
     return html`<li class="job" data-phase=${job.phase}>
         <strong>${job.file.name}</strong>
         <span role=${job.phase === 'failed' ? 'alert' : null} class=${job.phase === 'failed' ? 'problem' : ''}>
-            ${phase_words[job.phase](job)}
+            ${phase_texts[job.phase](job)}
         </span>
-        ${job.waits && html`<span class="waits">The service is asked again: ${job.waits}</span>`}
+        ${job.waits && html`<span class="waits">The request is repeated: ${job.waits}</span>`}
         ${moving && html`<progress value=${share} max="1" aria-label=${`${job.file.name}, ${job.phase}`}></progress>`}
         <span class="actions">
             ${job.phase === 'failed' && html`<button class="small" onClick=${() => uploads.again(job)}>Go on</button>`}
@@ -40,7 +40,7 @@ function Job({ job }) {
     </li>`;
 }
 
-/** on_stored is called after each file of the kind that the service has taken. */
+/** on_stored(): called after each upload of the kind that has finished. */
 export function UploadPanel({ kind, label, accept, on_stored }) {
     const { uploads } = use_app();
     const jobs = use_jobs(kind);

@@ -1,15 +1,16 @@
-// All files that are being sent, one after the other; they go on while pages change.
-import { is_turned_away, pause } from '../patience.js';
+// All uploads, one after the other. They continue while the user changes pages.
+import { is_turned_away, pause } from '../retry.js';
 import { forget_file, keep_file, kept_file, kept_files } from './kept_files.js';
 import { delays_ms, end_upload, send_file } from './tus_upload.js';
 
-/** Whether asking again changes nothing: a token may come (401), and what was turned away for now passes. */
+/** Whether another try would fail too. After 401 a token may be entered, and a reply of is_turned_away passes. */
 const is_final = status => status >= 400 && status < 500 && status !== 401 && !is_turned_away(status);
 
 /**
  * A job: { id, kind: 'model' | 'environment' | 'mesh', file, phase, done, known, sha256, entry, problem, waits }.
- * phase: waiting, digesting, sending, reading (by the service), stored, failed; done: bytes of the phase; waits: why
- * the service is asked again later, if it is.
+ * phase: waiting, digesting, sending, reading (by the service), stored, failed; done: bytes of the phase;
+ * known: whether the service had the file; entry: the service's view of the input;
+ * problem: message of the failure; waits: why a request is repeated later, if it is.
  */
 export class Uploads {
     jobs = [];
@@ -18,14 +19,14 @@ export class Uploads {
     #listeners = new Set();
     #running = false;
     #stops = new Map(); // by job id: AbortController
-    #holds = new Map(); // by job id: what lets go of it, see hold
+    #holds = new Map(); // by job id: its lock, see hold()
 
     constructor(api, announce) {
         this.#api = api;
         this.#announce = announce;
     }
 
-    /** Calls back after every change; returns what ends that. */
+    /** Calls `callback` after every change. Returns a function that stops that. */
     listen(callback) {
         this.#listeners.add(callback);
         return () => this.#listeners.delete(callback);
@@ -42,26 +43,26 @@ export class Uploads {
         this.#run();
     }
 
-    /** Takes up what a reload interrupted or a closed tab left, and what failed for want of a token. */
-    async go_on() {
+    /** Resumes uploads that a reload or a closed tab interrupted, and those that failed without a token. */
+    async resume() {
         for (const job of this.jobs)
             if (job.phase === 'failed' && job.status === 401) this.#update(job, { phase: 'waiting' });
         this.#run();
-        for (const { id } of await kept_files()) if (!this.#holds.has(id)) this.#take_up(id);
+        for (const { id } of await kept_files()) if (!this.#holds.has(id)) this.#resume_kept(id);
     }
 
-    async #take_up(id) {
+    async #resume_kept(id) {
         const held = hold(id);
         this.#holds.set(id, held);
-        await held.granted; // now, or when the tab that sends it is gone
+        await held.granted; // at once, or when the tab that sends the file is closed
         const kept = await kept_file(id);
-        if (!kept) return this.#let_go(id);
+        if (!kept) return this.#release(id);
         this.jobs = [...this.jobs, { ...kept, phase: 'waiting', done: 0 }];
         this.#changed();
         this.#run();
     }
 
-    async #let_go(id) {
+    async #release(id) {
         await forget_file(id);
         this.#holds.get(id)?.release();
         this.#holds.delete(id);
@@ -72,12 +73,12 @@ export class Uploads {
         this.#run();
     }
 
-    /** Takes a job off the list, also while it is being sent; what the service has of an unfinished one goes. */
+    /** Removes a job from the list, also while it is sent. An unfinished upload is deleted from the service. */
     remove(job) {
         const stop = this.#stops.get(job.id);
         stop?.abort(new Error('stopped'));
         if (!stop && job.sha256 && job.phase !== 'stored') end_upload(job.file, job.sha256).catch(() => {});
-        this.#let_go(job.id);
+        this.#release(job.id);
         this.jobs = this.jobs.filter(({ id }) => id !== job.id);
         this.#changed();
     }
@@ -99,36 +100,36 @@ export class Uploads {
         try {
             this.#update(job, { phase: 'digesting', done: 0 });
             const sha256 = await digest_of(job.file, done => this.#update(job, { done }), signal);
-            const known = await this.#give(job, sha256, signal);
+            const known = await this.#send_unless_stored(job, sha256, signal);
             signal.throwIfAborted();
             this.#update(job, { phase: 'reading', sha256, known, waits: null });
             const read = () => this.#api.post(`/v1/${job.kind}s`, { sha256 });
-            const entry = job.kind === 'mesh' ? null : await this.#patiently(job, read, signal);
+            const entry = job.kind === 'mesh' ? null : await this.#with_retries(job, read, signal);
             signal.throwIfAborted();
             remember_name(sha256, job.file.name);
             this.#update(job, { phase: 'stored', entry, waits: null });
             this.#announce(`${job.file.name} is stored.`);
-            this.#let_go(job.id);
+            this.#release(job.id);
         } catch (error) {
             if (signal.aborted) return;
             this.#update(job, { phase: 'failed', problem: error.message, status: error.status, waits: null });
-            if (is_final(error.status)) this.#let_go(job.id);
+            if (is_final(error.status)) this.#release(job.id);
         } finally {
             this.#stops.delete(job.id);
         }
     }
 
-    /** Sends what the service does not have; true where it had it. Another tab that sends the same file is first. */
-    async #give(job, sha256, signal) {
+    /** Sends the file unless the service has it; true if it had. Waits while another tab sends the same file. */
+    async #send_unless_stored(job, sha256, signal) {
         const turn = hold(sha256);
         const stopped = new Promise((_, reject) => signal.addEventListener('abort', () => reject(signal.reason)));
         try {
             await Promise.race([turn.granted, stopped]);
-            if (await this.#patiently(job, () => this.#is_stored(sha256, signal), signal)) return true;
+            if (await this.#with_retries(job, () => this.#is_stored(sha256, signal), signal)) return true;
             this.#update(job, { phase: 'sending', sha256, done: 0, waits: null });
             await send_file(job.file, sha256, {
                 on_progress: done => this.#update(job, { done, waits: null }),
-                on_wait: words => this.#wait(job, words),
+                on_wait: reason => this.#wait(job, reason),
                 signal,
             });
             return false;
@@ -148,8 +149,8 @@ export class Uploads {
         }
     }
 
-    /** Asks again what was turned away, as often as a piece of a file would be sent. */
-    async #patiently(job, ask, signal) {
+    /** Repeats a request that is turned away, as often as the upload of a piece is repeated. */
+    async #with_retries(job, ask, signal) {
         for (const delay_ms of delays_ms)
             try {
                 return await ask();
@@ -162,9 +163,9 @@ export class Uploads {
         return ask();
     }
 
-    #wait(job, words) {
-        if (job.waits !== words) this.#announce(`${job.file.name} waits: ${words}`);
-        this.#update(job, { waits: words });
+    #wait(job, reason) {
+        if (job.waits !== reason) this.#announce(`${job.file.name} waits: ${reason}`);
+        this.#update(job, { waits: reason });
     }
 
     #update(job, change) {
@@ -176,15 +177,16 @@ export class Uploads {
     }
 }
 
-// crypto.randomUUID exists only where the page is at home or comes over TLS.
+// crypto.randomUUID exists only on localhost and over TLS.
 function random_id() {
     return Array.from(crypto.getRandomValues(new Uint32Array(4)), word => word.toString(16)).join('-');
 }
 
 /**
- * What one tab at a time may have: a kept file by its id, the sending of a file by its digest. The browser takes it
- * back from a tab that is gone. There are such locks only where the page is at home or comes over TLS; elsewhere every
- * tab takes up what it finds.
+ * A lock that one tab at a time holds: on a kept file by its id, on the upload of a file by its digest. The browser
+ * releases the locks of a closed tab. Browsers have such locks only on localhost and over TLS; elsewhere the lock is
+ * granted at once, and every tab resumes the uploads that it finds.
+ * Returns { granted, release() }; granted: a promise.
  */
 function hold(id) {
     let release;
@@ -192,7 +194,7 @@ function hold(id) {
     const granted = new Promise(resolve => {
         if (!navigator.locks) return resolve();
         const own = () => (resolve(), released);
-        navigator.locks.request(`hairbake-upload-${id}`, own).catch(resolve); // a page without storage has none either
+        navigator.locks.request(`hairbake-upload-${id}`, own).catch(resolve); // no locks without storage
     });
     return { granted, release };
 }
@@ -209,7 +211,7 @@ function digest_of(file, on_progress, signal) {
             else if (data.sha256) end(resolve, data.sha256);
             else end(reject, new Error(data.error));
         };
-        worker.onerror = () => end(reject, new Error('The file could not be digested.'));
+        worker.onerror = () => end(reject, new Error('The digest of the file could not be computed.'));
         signal.addEventListener('abort', () => end(reject, signal.reason));
         worker.postMessage(file);
     });
@@ -218,7 +220,7 @@ function digest_of(file, on_progress, signal) {
 const names_key = 'hairbake.file-names';
 const most_names = 500;
 
-/** The service knows files by digest; the names that they had here are kept here. */
+/** Stores a file's name in this browser. The service knows the file by its digest only. */
 function remember_name(sha256, name) {
     const names = file_names();
     delete names[sha256];
@@ -226,11 +228,11 @@ function remember_name(sha256, name) {
     try {
         localStorage.setItem(names_key, JSON.stringify(Object.fromEntries(Object.entries(names).slice(-most_names))));
     } catch {
-        // No room: the file is known by its digest.
+        // No room: the file is shown by its digest.
     }
 }
 
-/** { sha256: file name } */
+/** The names of uploaded files in this browser: { sha256: file name }. */
 export function file_names() {
     try {
         return JSON.parse(localStorage.getItem(names_key)) ?? {};
@@ -239,7 +241,7 @@ export function file_names() {
     }
 }
 
-/** Forgets every file's name, also with the addresses of uploads (tus-js-client). */
+/** Removes the file names and the addresses of uploads (of tus-js-client) from this browser. */
 export function forget_names() {
     for (const key of Object.keys(localStorage))
         if (key === names_key || key.startsWith('tus::')) localStorage.removeItem(key);

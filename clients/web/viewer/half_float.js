@@ -1,4 +1,4 @@
-// Half floats (IEEE binary16) as bits.
+// Half floats (IEEE binary16): conversion from and to their 16 bits.
 
 export function from_half(bits) {
     const exponent = (bits >> 10) & 31,
@@ -17,6 +17,13 @@ export function to_half(value) {
     if (magnitude >= 65520) return sign | 0x7c00;
     const exponent = Math.max(Math.floor(Math.log2(magnitude)), -14);
     return sign | (((exponent + 14) << 10) + round_to_even(magnitude / 2 ** (exponent - 10)));
+}
+
+/** Every `stride`-th of the half floats, from the one at `first`. */
+export function half_values(halves, first, stride) {
+    const values = new Float32Array(Math.ceil((halves.length - first) / stride));
+    for (let i = 0, at = first; i < values.length; ++i, at += stride) values[i] = from_half(halves[at]);
+    return values;
 }
 
 function round_to_even(value) {

@@ -1,0 +1,103 @@
+#include "core/output/manifest_stages.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+namespace hairbake {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class T>
+Json triple(const Vec3<T>& v) {
+    return {v.x, v.y, v.z};
+}
+
+// ---- transmittance -------------------------------------------------------------------------------------------------
+
+/// Means over the receiver's points; null when it has none.
+Json receiver_means(const std::vector<float>& receiver) {
+    double plain = 0, cosine = 0;
+    for (std::size_t i = 0; i + 1 < receiver.size(); i += 2) {
+        plain += receiver[i];
+        cosine += receiver[i + 1];
+    }
+    const std::size_t positions = receiver.size() / 2;
+    const auto points = static_cast<double>(positions);
+    return {{"positions", positions},
+            {"mean", points > 0 ? Json(plain / points) : Json()},
+            {"cosine_mean", points > 0 ? Json(cosine / points) : Json()}};
+}
+
+/// Without a vertex to measure at there is no error, which is not an error of 0: null.
+Json error_bar(const ErrorBar& bar) {
+    const auto measured = [&](const auto& value) { return bar.vertices > 0 ? Json(value) : Json(); };
+    return {{"rmse", measured(bar.rmse)},
+            {"bias", measured(bar.bias)},
+            {"ci95", {{"rmse", measured(bar.rmse_ci95)}, {"bias", measured(bar.bias_ci95)}}},
+            {"vertices", bar.vertices},
+            {"inside_strand", bar.inside_strand},
+            {"directions", bar.directions}};
+}
+
+Json describe(const TransmittanceFacts& facts, const StagePart& part, const BakeRequest& request) {
+    const std::vector<float>& average = find_array(part.arrays, average_transmittance_kind())->values;
+    double sum = 0;
+    for (const float a : average) sum += a;
+    const bool any = !average.empty();
+    Json block{{"vertices", average.size()},
+               {"directions", facts.directions},
+               {"voxel_size", facts.voxel_size},
+               {"occupied_voxels", facts.occupied_voxels},
+               {"mean", any ? Json(sum / static_cast<double>(average.size())) : Json()},
+               {"minimum", any ? Json(*std::min_element(average.begin(), average.end())) : Json()},
+               {"maximum", any ? Json(*std::max_element(average.begin(), average.end())) : Json()}};
+    block["sh_bands"] = request.transmittance.sh_bands;
+    block["bent_cone"] = request.transmittance.bent_cone;
+    if (const VertexArray* receiver = find_array(part.arrays, receiver_kind()))
+        block["receiver"] = receiver_means(receiver->values);
+    return {{"transmittance", block}, {"error_bar", facts.error_bar ? error_bar(*facts.error_bar) : Json()}};
+}
+
+// ---- irradiance ----------------------------------------------------------------------------------------------------
+
+Json map_statistics(const MapStatistics& statistics) {
+    return {{"mean", triple(statistics.mean)},
+            {"minimum", triple(statistics.minimum)},
+            {"maximum", triple(statistics.maximum)},
+            {"clamped_negative_mass", statistics.clamped_negative_mass}};
+}
+
+/// An object for a lobe of one map, a list of objects for one with slices.
+Json describe_lobe(const MapLobe& lobe) {
+    Json list = Json::array();
+    for (std::size_t i = 0; i < lobe.cubes.size(); ++i) {
+        Json map = Json::object();
+        if (lobe.has_slices()) map["theta_prime_deg"] = lobe.theta_prime_deg[i / lobe.orders];
+        if (i < lobe.statistics.size()) map.update(map_statistics(lobe.statistics[i]));
+        list.push_back(map);
+    }
+    return lobe.has_slices() ? list : list.at(0);
+}
+
+Json describe(const IrradianceFacts& facts, const StagePart& part, const BakeRequest&) {
+    Json block{{"face_size", part.maps->face_size}, {"exponent", part.maps->exponent}};
+    for (const MapLobe& lobe : part.maps->lobes) block[lobe.name] = describe_lobe(lobe);
+    block["interpolation_bound"] = triple(facts.interpolation_bound);
+    block["interpolation_bound_relative"] = facts.interpolation_bound_relative;
+    block["environment_sh_bands"] = facts.environment_sh_bands;
+    if (facts.from_sh) {
+        block["sh_bands"] = {{"diffuse", facts.sh_bands_diffuse}, {"specular", facts.sh_bands_specular}};
+        block["predicted_error"] = {{"diffuse", facts.predicted_error_diffuse},
+                                    {"specular", facts.predicted_error_specular}};
+    }
+    return {{"irradiance", block}};
+}
+
+}  // namespace
+
+Json describe_part(const StagePart& part, const BakeRequest& request) {
+    return std::visit([&](const auto& facts) { return describe(facts, part, request); }, part.facts);
+}
+
+}  // namespace hairbake

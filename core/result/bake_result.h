@@ -1,0 +1,69 @@
+// Everything that a bake gives, before it is written to files.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/environment/environment_map.h"
+#include "core/hair/hair_model.h"
+#include "core/mesh/mesh_topology.h"
+#include "core/mesh/triangle_mesh.h"
+#include "core/request/request.h"
+#include "core/result/stage_part.h"
+
+namespace hairbake {
+
+/// Facts of the hair model, kept when the model itself is not.
+struct HairFacts {
+    std::uint64_t strands = 0, vertices = 0, segments = 0;
+    Vec3f bounds_min, bounds_max;  ///< of the points, model units
+};
+
+/// What is known of a mesh that was read.
+struct MeshFacts {
+    std::size_t positions = 0, triangles = 0;
+    MeshTopology topology;
+};
+
+/// The files that a bake read.
+struct InputFacts {
+    InputDigests digests;
+    std::optional<HairFacts> hair;
+    std::optional<MeshFacts> occluder, receiver;
+    std::optional<EnvironmentMap> environment;  ///< without its pixels
+};
+
+/// What differs between two runs of the same request; everything else is the same bit for bit.
+struct Measured {
+    std::map<std::string, double> timings_s;  ///< wall seconds of each phase that ran
+    std::uint64_t peak_memory_bytes = 0;      ///< of the process, as the kernel counts resident memory
+    int threads = 0;
+};
+
+struct BakeResult {
+    BakeRequest request;           ///< as run
+    std::string id;                ///< bake_id()
+    std::vector<StagePart> parts;  ///< of the stages that ran, in the order of stages()
+    InputFacts inputs;
+    std::optional<HairModel> hair;      ///< what the writers need of the inputs
+    std::vector<std::string> warnings;  ///< of inputs, stages and output, for the person who asked for the bake
+    Measured measured;
+
+    /// Null where the stage did not run.
+    const StagePart* part(std::string_view stage) const {
+        for (const StagePart& part : parts)
+            if (part.stage->name == stage) return &part;
+        return nullptr;
+    }
+    /// The part that has an array of this kind, or null.
+    const VertexArray* array(const ArrayKind& kind) const {
+        for (const StagePart& part : parts)
+            if (const VertexArray* found = find_array(part.arrays, kind)) return found;
+        return nullptr;
+    }
+};
+
+}  // namespace hairbake

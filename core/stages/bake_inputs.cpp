@@ -1,0 +1,125 @@
+#include "core/stages/bake_inputs.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/base/assert.h"
+#include "core/base/digest.h"
+#include "core/base/error.h"
+#include "core/base/file_identity.h"
+#include "core/base/naming_file.h"
+#include "core/environment/environment_files.h"
+#include "core/environment/environment_reader.h"
+#include "core/hair/hair_file.h"
+#include "core/mesh/mesh_file.h"
+
+namespace hairbake {
+namespace {
+
+/// Watches files from their digest to the end of their reading. OpenImageIO reads pictures in an order of its own, so
+/// that a digest cannot be made of the same pass; this finds out whether both passes saw the same bytes.
+class UnchangedFiles {
+public:
+    explicit UnchangedFiles(std::vector<std::filesystem::path> files) : files_(std::move(files)) {
+        for (const auto& file : files_) identities_.push_back(identity_of(file));
+    }
+
+    /// Throws Error(bad_input) naming the first file that has changed.
+    void check() const {
+        for (std::size_t i = 0; i < files_.size(); ++i)
+            if (identity_of(files_[i]) != identities_[i])
+                throw Error(ErrorKind::bad_input,
+                            files_[i].string() + " has changed while it was read; bake again when it is whole");
+    }
+
+private:
+    std::vector<std::filesystem::path> files_;
+    std::vector<std::optional<FileIdentity>> identities_;
+};
+
+/// Which of its edges make a mesh something else than a closed surface, for a warning.
+std::string shell_of(const MeshTopology& topology) {
+    return std::to_string(topology.open_edges) + " of its " + std::to_string(topology.edges) +
+           " edges lie in one triangle only, " + std::to_string(topology.irregular_edges) +
+           " in more than two or in two that disagree about the outside";
+}
+
+bool reads(const Stage& stage, std::string_view input) {
+    return std::find(stage.inputs.begin(), stage.inputs.end(), input) != stage.inputs.end();
+}
+
+MeshFacts facts_of(const TriangleMesh& mesh) { return {mesh.positions.size(), mesh.triangles.size(), {}}; }
+
+}  // namespace
+
+void BakeInputs::read_for(const Stage& stage) {
+    if (reads(stage, "hair") && request_.hair && !hair_)
+        clock_.run("read_hair", [&](Progress& progress) { read_hair_and_meshes(progress); });
+    if (reads(stage, "environment") && request_.environment && !environment_)
+        clock_.run("read_environment", [&](Progress& progress) { read_sky(progress); });
+}
+
+void BakeInputs::read_hair_and_meshes(Progress& progress) {
+    std::vector<std::filesystem::path> files{*request_.hair};
+    for (const auto* mesh : {&request_.occluder, &request_.receiver})
+        if (*mesh) files.emplace_back(**mesh);
+    const UnchangedFiles unchanged(files);
+    facts_.digests["hair"] = digest_of_file(*request_.hair);
+    if (request_.occluder) facts_.digests["occluder"] = digest_of_file(*request_.occluder);
+    if (request_.receiver) facts_.digests["receiver"] = digest_of_file(*request_.receiver);
+    progress.check();
+    hair_ = read_hair(*request_.hair);
+    if (request_.occluder) read_occluder();
+    if (request_.receiver) {
+        receiver_ = read_mesh(*request_.receiver);
+        facts_.receiver = facts_of(*receiver_);
+    }
+    unchanged.check();
+}
+
+void BakeInputs::read_occluder() {
+    occluder_ = read_mesh(*request_.occluder);
+    facts_.occluder = facts_of(*occluder_);
+    const MeshTopology& topology = facts_.occluder->topology = topology_of(*occluder_);
+    if (!topology.closed)
+        warnings_.push_back("the occluder is not closed (" + shell_of(topology) +
+                            "): it is taken as a shell that stops light from both sides");
+    if (topology.inside_out)
+        warnings_.push_back("the occluder's triangles run clockwise seen from outside: they are turned round");
+}
+
+void BakeInputs::read_sky(Progress& progress) {
+    const std::string& path = *request_.environment;
+    const auto files = find_environment_files(path).files;
+    const UnchangedFiles unchanged({files.begin(), files.end()});
+    facts_.digests["environment"] = digest_of_environment(path);
+    environment_ = read_environment(path, request_.environment_settings, progress);
+    unchanged.check();
+    warnings_.insert(warnings_.end(), environment_->warnings.begin(), environment_->warnings.end());
+}
+
+bool BakeInputs::receiver_is_occluder() const {
+    return receiver_ && occluder_ && facts_.digests.at("receiver") == facts_.digests.at("occluder");
+}
+
+const StrandGeometry& BakeInputs::strands() {
+    HAIRBAKE_ASSERT(hair_.has_value());
+    if (strands_) return *strands_;
+    naming_file(*request_.hair, [&] { strands_ = make_strand_geometry(*hair_, request_.strand); });
+    facts_.hair = {strands_->strand_count(), strands_->vertex_count(), strands_->segment_count, strands_->bounds_min,
+                   strands_->bounds_max};
+    return *strands_;
+}
+
+void BakeInputs::release_unless_read_by(std::span<const Stage* const> stages) {
+    if (!std::any_of(stages.begin(), stages.end(), [](const Stage* stage) { return reads(*stage, "hair"); }))
+        strands_.reset();
+}
+
+InputFacts BakeInputs::take_facts(bool keep_pixels) {
+    if (environment_ && !keep_pixels) environment_->pixels = {};
+    facts_.environment = std::move(environment_);
+    return std::move(facts_);
+}
+
+}  // namespace hairbake

@@ -1,0 +1,69 @@
+// The input files of a bake: each is read once, when the first stage needs it, and shared by the stages.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/environment/environment_map.h"
+#include "core/hair/hair_model.h"
+#include "core/hair/strand_geometry.h"
+#include "core/mesh/triangle_mesh.h"
+#include "core/request/request.h"
+#include "core/result/bake_result.h"
+#include "core/stages/phase_clock.h"
+
+namespace hairbake {
+
+/// Not thread-safe. Every reading function may throw Error(bad_input) naming the file, also where the file changes
+/// while it is read: its digest would then be that of other bytes than the bake saw.
+class BakeInputs {
+public:
+    /// All arguments must outlive this object.
+    BakeInputs(const BakeRequest& request, PhaseClock& clock) : request_(request), clock_(clock) {}
+
+    /// Reads the files that the stage names, as far as the request has them, in the phases read_hair and
+    /// read_environment; what is read already is not read again.
+    void read_for(const Stage& stage);
+
+    // What read_for() has read. Null or a failed precondition for what the request does not name.
+    const HairModel& hair() const { return *hair_; }
+    const TriangleMesh* occluder() const { return occluder_ ? &*occluder_ : nullptr; }
+    const TriangleMesh* receiver() const { return receiver_ ? &*receiver_ : nullptr; }
+    /// Whether one file is both.
+    bool receiver_is_occluder() const;
+    const EnvironmentMap& environment() const { return *environment_; }
+
+    /// The hair's polylines, made from the model at the first call.
+    const StrandGeometry& strands();
+
+    const InputDigests& digests() const { return facts_.digests; }
+    /// Warnings about what was read since the last call.
+    std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
+
+    /// Gives back the memory of what none of the `stages` reads, as far as the result does not need it.
+    void release_unless_read_by(std::span<const Stage* const> stages);
+
+    /// Facts of what was read. The environment's pixels are kept in them only when `keep_pixels` is set. The environment
+    /// is gone from this object afterwards.
+    InputFacts take_facts(bool keep_pixels);
+    std::optional<HairModel> take_hair() { return std::move(hair_); }
+
+private:
+    void read_hair_and_meshes(Progress& progress);
+    void read_occluder();
+    void read_sky(Progress& progress);
+
+    const BakeRequest& request_;
+    PhaseClock& clock_;
+    InputFacts facts_;
+    std::vector<std::string> warnings_;
+    std::optional<HairModel> hair_;
+    std::optional<StrandGeometry> strands_;
+    std::optional<TriangleMesh> occluder_, receiver_;
+    std::optional<EnvironmentMap> environment_;
+};
+
+}  // namespace hairbake

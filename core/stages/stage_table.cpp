@@ -1,0 +1,33 @@
+#include "core/stages/stage_table.h"
+
+#include "core/base/error.h"
+
+namespace hairbake {
+namespace {
+
+struct StageCode {
+    std::string_view stage;
+    void (*run)(StageContext&, StagePart&);
+};
+
+constexpr StageCode table[] = {
+    {"transmittance", run_transmittance_stage},
+    {"irradiance", run_irradiance_stage},
+};
+
+}  // namespace
+
+StagePart run_stage(const Stage& stage, StageContext& context) {
+    for (const StageCode& code : table) {
+        if (code.stage != stage.name) continue;
+        context.inputs.read_for(stage);
+        StagePart part;
+        part.stage = &stage;
+        part.key = stage_key(stage, context.inputs.digests(), context.request);
+        code.run(context, part);
+        return part;
+    }
+    throw Error(ErrorKind::internal, "the stage " + std::string(stage.name) + " has no code");
+}
+
+}  // namespace hairbake

@@ -1,0 +1,26 @@
+// The code of each stage. core/request/stages.h says what a stage is and reads; this is the table of what it does.
+#pragma once
+
+#include "core/request/request.h"
+#include "core/result/stage_part.h"
+#include "core/stages/bake_inputs.h"
+#include "core/stages/phase_clock.h"
+
+namespace hairbake {
+
+/// What a stage works with.
+struct StageContext {
+    const BakeRequest& request;
+    BakeInputs& inputs;  ///< holds what the stage's row names as inputs
+    PhaseClock& clock;
+};
+
+/// Reads the stage's inputs and runs it.
+/// Throws Error as bake().
+StagePart run_stage(const Stage& stage, StageContext& context);
+
+// One function a stage, each in a file of its own. `part` comes with stage and key; the function fills in the rest.
+void run_transmittance_stage(StageContext& context, StagePart& part);
+void run_irradiance_stage(StageContext& context, StagePart& part);
+
+}  // namespace hairbake

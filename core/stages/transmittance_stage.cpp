@@ -1,0 +1,93 @@
+// Hair in memory to A (and what else the request asks for) in memory, and A's error bar.
+#include <numeric>
+#include <optional>
+
+#include "core/base/naming_file.h"
+#include "core/output/result_files.h"
+#include "core/reference/tracer.h"
+#include "core/stages/stage_table.h"
+#include "core/visibility/direction_set.h"
+#include "core/volume/opacity_transmittance.h"
+
+namespace hairbake {
+namespace {
+
+/// By tracing the true strands.
+Transmittance trace_all(const StrandScene& scene, const TransmittanceScene& baked,
+                        const TransmittanceSettings& settings, Progress& progress) {
+    std::vector<std::uint32_t> vertices(scene.strands().vertex_count());
+    std::iota(vertices.begin(), vertices.end(), 0u);
+    const auto directions = make_directions(settings.direction_set, settings.directions, settings.seed);
+    const double hair_share = baked.receiver ? 0.9 : 1.0;
+    ProgressPart hair = progress.part(0, hair_share), receiver = progress.part(hair_share, 1);
+    Transmittance transmittance;
+    DirectionalMeans means =
+        trace_directional(scene, vertices, directions, settings.sh_bands, settings.bent_cone, hair);
+    transmittance.average = std::move(means.average);
+    transmittance.sh = std::move(means.sh);
+    transmittance.bent_cone = std::move(means.bent_cone);
+    if (baked.receiver)
+        transmittance.receiver =
+            trace_receiver(scene, *baked.receiver, baked.receiver_is_occluder, directions, receiver);
+    transmittance.directions = settings.directions;
+    return transmittance;
+}
+
+/// By the method of the request; `scene` is made where that is to trace.
+Transmittance transmittance_of(const TransmittanceScene& baked, const TransmittanceSettings& settings,
+                               std::optional<StrandScene>& scene, Progress& progress) {
+    if (settings.method == TransmittanceMethod::trace) {
+        ProgressPart building = progress.part(0, 0.1), tracing = progress.part(0.1, 1);
+        scene.emplace(baked.strands, building, baked.occluder);
+        return trace_all(*scene, baked, settings, tracing);
+    }
+    if (settings.method == TransmittanceMethod::opacity_maps)
+        return bake_transmittance_opacity_maps(baked, settings, progress);
+    return bake_transmittance_volume(baked, settings, progress);
+}
+
+void add_array(StagePart& part, const BakeRequest& request, const ArrayKind& kind, std::vector<float> values) {
+    if (const std::size_t components = kind.components(request))
+        part.arrays.push_back({&kind, components, std::move(values)});
+}
+
+}  // namespace
+
+void run_transmittance_stage(StageContext& context, StagePart& part) {
+    const BakeRequest& request = context.request;
+    const TransmittanceSettings& settings = request.transmittance;
+    check_outputs(request, context.inputs.hair());
+    std::optional<StrandScene> scene;
+    Transmittance baked;
+    TransmittanceFacts facts;
+    context.clock.run("transmittance", [&](Progress& progress) {
+        const StrandGeometry& strands = context.inputs.strands();
+        TransmittanceScene what{strands, context.inputs.occluder()};
+        what.receiver = context.inputs.receiver();
+        what.receiver_is_occluder = context.inputs.receiver_is_occluder();
+        what.keep_density = request.wants("vdb");
+        naming_file(*request.hair, [&] { baked = transmittance_of(what, settings, scene, progress); });
+        facts.degenerate_segments = strands.degenerate_segment_count;
+    });
+    part.warnings = std::move(baked.warnings);
+    if (settings.reference_vertices > 0)
+        context.clock.run("reference", [&](Progress& progress) {
+            ProgressPart building = progress.part(0, 0.5), tracing = progress.part(0.5, 1);
+            if (!scene) scene.emplace(context.inputs.strands(), building, context.inputs.occluder());
+            facts.error_bar = measure_error(*scene, baked.average, settings.reference_vertices, settings.seed, tracing);
+        });
+    facts.directions = baked.directions;
+    facts.voxel_size = baked.voxel_size;
+    facts.occupied_voxels = baked.occupied_voxels;
+    facts.density = std::move(baked.density);
+    add_array(part, request, average_transmittance_kind(), std::move(baked.average));
+    add_array(part, request, transmittance_sh_kind(), std::move(baked.sh));
+    add_array(part, request, bent_cone_kind(), std::move(baked.bent_cone));
+    add_array(part, request, receiver_kind(), std::move(baked.receiver));
+    for (NamedArray& other : baked.others)
+        for (const ArrayKind& kind : array_kinds())
+            if (kind.name == other.name) add_array(part, request, kind, std::move(other.values));
+    part.facts = std::move(facts);
+}
+
+}  // namespace hairbake
