@@ -33,7 +33,7 @@ Way through_cylinder(const Vec3d& a, const Vec3d& axis, const Vec3d& l, double r
     const Vec3d unit = axis / axis_length;
     const Vec3d across_l = l - unit * dot(l, unit), across_a = a - unit * dot(a, unit);
     const double climb = dot(l, unit), foot = dot(a, unit), square = dot(across_l, across_l);
-    if (square < 1e-14) return {};  // along the axis: the end spheres hold the whole way
+    if (square < 1e-14) return {};  // along the axis: the end spheres cover the whole way
     Way way = between_roots(square, -dot(across_l, across_a), dot(across_a, across_a) - radius * radius);
     if (std::abs(climb) > 1e-9) {
         const double t0 = foot / climb, t1 = (foot + axis_length) / climb;
@@ -44,7 +44,7 @@ Way through_cylinder(const Vec3d& a, const Vec3d& axis, const Vec3d& l, double r
     return way.begin <= way.end ? way : Way{};
 }
 
-/// Way of a ray through a segment with round ends, as thick as its thicker end and a rounding error.
+/// Way of a ray through a segment with round ends. The segment is as thick as its thicker end, plus a rounding error.
 Way through_segment(const StrandGeometry& strands, std::uint32_t segment, const Vec3d& origin, const Vec3d& l) {
     const Vec3d a = Vec3d(strands.positions[segment]) - origin, b = Vec3d(strands.positions[segment + 1]) - origin;
     const double radius = 0.5001 * double(std::max(strands.widths[segment], strands.widths[segment + 1]));
@@ -78,7 +78,7 @@ float transmittance_of_crossings(const StrandGeometry& strands, const Vec3f& ori
         return a.strand != b.strand ? a.strand < b.strand : a.way.begin < b.way.begin;
     });
     float transmittance = 1;
-    double left = 0;  // where the ray leaves the strand that it is in
+    double left = 0;  // where the ray leaves its present strand
     for (std::size_t k = 0; k < passages.size(); ++k) {
         const Passage& passage = passages[k];
         const bool inside = k > 0 && passages[k - 1].strand == passage.strand && passage.way.begin <= left;

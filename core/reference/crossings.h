@@ -1,4 +1,4 @@
-// How many times a ray crosses strands: once for each time that it enters one, whatever the number of segments.
+// How many times a ray crosses strands. Each entry into a strand is one crossing, for any number of segments.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,11 @@
 
 namespace hairbake {
 
-/// Product of (1 - opacity) over the crossings of the ray from `origin` in direction `l` (unit) with the strands of the
-/// solid segments `hit`, which it meets; repetitions do not matter. The ways through a strand's segments that overlap
-/// along the ray are one crossing. `hit` is sorted and thinned.
+/// Product of (1 - opacity) over the crossings of a ray. Parts of the ray inside segments of one strand that overlap
+/// are one crossing.
+///
+/// origin, l: of the ray; l is a unit vector
+/// hit:       the solid segments that the ray meets, in any order, repeated or not; gets sorted, repetitions removed
 float transmittance_of_crossings(const StrandGeometry& strands, const Vec3f& origin, const Vec3f& l,
                                  std::vector<std::uint32_t>& hit);
 

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <vector>
 
+#include "core/base/assert.h"
 #include "core/base/random.h"
 #include "core/reference/nearest_strand.h"
 #include "core/reference/tracer.h"
@@ -25,20 +26,19 @@ std::vector<std::uint32_t> draw_vertices(std::size_t vertex_count, std::size_t c
     return drawn;
 }
 
-/// Removes the vertices inside another strand; returns how many.
-std::uint32_t drop_inside(const StrandScene& scene, std::vector<std::uint32_t>& vertices) {
+/// Those of `vertices` that are not inside another strand.
+std::vector<std::uint32_t> outside_strands(const StrandScene& scene, std::span<const std::uint32_t> vertices) {
     const std::vector<float> distance = distance_to_other_strands(scene.strands(), vertices, 1);
     std::vector<std::uint32_t> outside;
     for (std::size_t k = 0; k < vertices.size(); ++k)
         if (distance[k] >= 0) outside.push_back(vertices[k]);
-    const auto dropped = static_cast<std::uint32_t>(vertices.size() - outside.size());
-    vertices = std::move(outside);
-    return dropped;
+    return outside;
 }
 
 }  // namespace
 
 ErrorBar error_statistics(std::span<const float> baked, std::span<const float> traced) {
+    HAIRBAKE_ASSERT(baked.size() == traced.size());
     ErrorBar bar;
     bar.vertices = static_cast<std::uint32_t>(baked.size());
     if (baked.empty()) return bar;
@@ -61,16 +61,17 @@ ErrorBar error_statistics(std::span<const float> baked, std::span<const float> t
 
 ErrorBar measure_error(const StrandScene& scene, std::span<const float> average, int count, std::uint64_t seed,
                        Progress& progress) {
+    HAIRBAKE_ASSERT(count >= 0 && average.size() == scene.strands().vertex_count());
     constexpr int directions = 1024;
-    auto vertices = draw_vertices(average.size(), static_cast<std::size_t>(count), seed);
-    const std::uint32_t inside = drop_inside(scene, vertices);
+    const auto drawn = draw_vertices(average.size(), static_cast<std::size_t>(count), seed);
+    const auto vertices = outside_strands(scene, drawn);
     const auto traced =
         trace_transmittance(scene, vertices, make_directions(DirectionSet::fibonacci, directions, 0), progress);
     std::vector<float> baked;
     baked.reserve(vertices.size());
     for (const std::uint32_t v : vertices) baked.push_back(average[v]);
     ErrorBar bar = error_statistics(baked, traced);
-    bar.inside_strand = inside;
+    bar.inside_strand = static_cast<std::uint32_t>(drawn.size() - vertices.size());
     bar.directions = directions;
     return bar;
 }

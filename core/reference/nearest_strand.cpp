@@ -19,8 +19,8 @@ float surface_distance(const StrandGeometry& strands, std::uint32_t segment, con
     return static_cast<float>(length(to_p - s * axis) - 0.5 * width);
 }
 
-/// The queried vertices in a lattice of cells. A vertex is listed in every cell that its reach touches, so a segment
-/// needs to look only into the cells that it passes.
+/// The queried vertices in a lattice of cells. A vertex is listed in every cell that its reach touches, so that the
+/// cells along a segment list every vertex near it.
 class QueryCells {
 public:
     QueryCells(const StrandGeometry& strands, std::span<const std::uint32_t> vertices, float limit)
@@ -41,7 +41,7 @@ public:
 
     float cell() const { return cell_; }
 
-    /// Calls visit(k) for the queries that are listed in cells of the box.
+    /// Calls visit(k) for the queries listed in the cells of the box.
     template <class Visit>
     void for_each_query(const Vec3f& low, const Vec3f& high, const Visit& visit) const {
         for_each_cell(low, high, [&](std::uint32_t cell) {

@@ -1,4 +1,4 @@
-// How near other strands come to a vertex.
+// The distance from a vertex to the nearest other strand.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,15 @@
 
 namespace hairbake {
 
-/// For each of `vertices` (indices of the strands' points): distance from the vertex to the surface of the nearest
-/// solid segment that is neither adjacent to it nor joined to it inside the strand's own thickness (segments shorter
-/// than half a width), in units of the vertex's width; negative inside another strand, at most `limit`. (Embree's point
-/// queries do not see curves, so this is a search of our own, made for a few thousand vertices among millions of
-/// segments.) The same for any thread count.
+/// For each of `vertices` the distance to the surface of the nearest solid segment, in units of the vertex's width:
+/// negative inside another strand, at most `limit`. The vertex's adjacent segments do not count, nor those joined to it
+/// inside the strand's own thickness (segments shorter than half a width). The same for any thread count.
+///
+/// vertices: indices of the strands' points
+/// limit:    widths of the vertex
+///
+/// (Embree's point queries do not support curves. This search is made for a few thousand vertices among millions of
+/// segments.)
 std::vector<float> distance_to_other_strands(const StrandGeometry& strands, std::span<const std::uint32_t> vertices,
                                              float limit);
 

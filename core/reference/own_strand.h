@@ -1,4 +1,4 @@
-// Self exclusion: a strand does not shadow its own vertices through its own thickness.
+// Self exclusion: the thickness of a strand does not shadow the strand's own vertices.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +7,12 @@
 
 namespace hairbake {
 
-/// Whether the ray from vertex `v` in direction `l` (unit, or zero for the vertex alone) enters `segment` before it has
-/// left the strand of `v`: it passes every joint from the adjacent segments `own` of `v` to `segment`, one after
-/// another, within the strand's radius. (Then it stays inside: a piece with its two joint spheres is convex.)
+/// Whether the ray from vertex `v` enters `segment` before it has left the strand of `v`. It does when it passes every
+/// joint from `own` to `segment`, one after another, within the strand's radius. (Then it stays inside: a segment with
+/// its two joint spheres is convex.)
+///
+/// own: adjacent_segments(strands, v); must not contain `segment`
+/// l:   unit direction of the ray, or zero for the vertex alone
 bool enters_from_inside(const StrandGeometry& strands, std::uint32_t v, const AdjacentSegments& own,
                         std::uint32_t segment, const Vec3f& l);
 

@@ -12,11 +12,11 @@
 namespace hairbake {
 namespace {
 
-/// Embree asks this during a build; false makes it stop.
-bool go_on(void* progress, double fraction) {
-    auto& told = *static_cast<Progress*>(progress);
-    told.report(fraction);
-    return !told.cancelled();
+/// Embree calls this during a build; false makes it stop.
+bool may_continue(void* progress, double fraction) {
+    auto& receiver = *static_cast<Progress*>(progress);
+    receiver.report(fraction);
+    return !receiver.cancelled();
 }
 
 float power_of_two_scale(const StrandGeometry& strands) {
@@ -52,7 +52,7 @@ void StrandScene::release() {
 
 RTCSceneTy* StrandScene::new_scene(Progress& progress) {
     const RTCScene scene = rtcNewScene(device_);
-    rtcSetSceneProgressMonitorFunction(scene, go_on, &progress);
+    rtcSetSceneProgressMonitorFunction(scene, may_continue, &progress);
     return scene;
 }
 
@@ -63,7 +63,7 @@ void StrandScene::build(Progress& progress) {
     rtcCommitScene(scene_);
     if (!occluder_) return;
     occluder_scene_ = new_scene(progress);
-    rtcSetSceneFlags(occluder_scene_, RTC_SCENE_FLAG_ROBUST);  // no ray slips through between two triangles
+    rtcSetSceneFlags(occluder_scene_, RTC_SCENE_FLAG_ROBUST);  // no ray passes between two adjacent triangles
     attach_triangles();
     rtcCommitScene(occluder_scene_);
 }
@@ -88,9 +88,9 @@ void StrandScene::attach_curves() {
         }
         for (std::size_t k = 0; k < segments; ++k) {
             indices[k] = segment_of_[k];
-            // No neighbours: every segment has both its round ends and reports every ray that meets it. What a strand
-            // covers is the same; with neighbours Embree leaves out hits inside the next segment, so that a ray may
-            // seem to leave a strand that it is still in.
+            // No neighbours: every segment has two round ends and reports every ray that meets it. The strand covers
+            // the same region. With neighbours Embree omits hits inside the next segment, so that a ray may seem to
+            // leave a strand while it is still inside.
             flags[k] = 0;
         }
         rtcCommitGeometry(curves);

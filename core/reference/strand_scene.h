@@ -1,4 +1,4 @@
-// The true strands as Embree curves.
+// The strands as Embree curves, and the occluder as triangles.
 #pragma once
 
 #include <vector>
@@ -12,13 +12,16 @@ struct RTCSceneTy;
 
 namespace hairbake {
 
-/// Solid segments as Embree round linear curves (cones with rounded joints, thickness as diameter); degenerate segments
-/// are left out. Primitive k of geometry 0 is segment segment_of(k). Embree sees the model scaled by scale(). Refers to
-/// `strands` and `occluder`, which must outlive it. The occluder is an Embree scene of its own, as its rays start
-/// elsewhere (core/mesh/grounding.h). Immutable after construction; may be traced from several threads.
+/// Solid segments as Embree round linear curves (cones with rounded joints, thickness as diameter), without degenerate
+/// segments. Primitive k of geometry 0 is segment segment_of(k). In Embree the model is scaled by scale(). The occluder
+/// is an Embree scene of its own, because its rays start elsewhere (core/mesh/grounding.h). Immutable after
+/// construction; several threads may trace it.
 class StrandScene {
 public:
-    /// Throws Error(out_of_resources), Error(cancelled), Error(internal) with Embree's words.
+    /// strands, occluder: must outlive the scene; occluder may be null
+    ///
+    /// Throws Error(out_of_resources), Error(cancelled).
+    /// Throws Error(internal) with Embree's error number.
     StrandScene(const StrandGeometry& strands, Progress& progress, const TriangleMesh* occluder = nullptr);
     ~StrandScene();
     StrandScene(const StrandScene&) = delete;
@@ -29,8 +32,8 @@ public:
     /// Stops light completely; null for none.
     const TriangleMesh* occluder() const { return occluder_; }
     RTCSceneTy* occluder_scene() const { return occluder_scene_; }
-    /// A power of two that makes the longest side of the bounds 1 to 2: Embree multiplies up to four lengths, which
-    /// would leave the range of floats in a model of 1e-10 or 1e10 units.
+    /// A power of two that makes the longest side of the bounds 1 to 2. Embree multiplies up to four lengths: in a
+    /// model of 1e-10 or 1e10 units that would leave the range of floats.
     float scale() const { return scale_; }
     std::uint32_t segment_of(std::uint32_t primitive) const { return segment_of_[primitive]; }
 

@@ -25,17 +25,17 @@ struct RayOrigin {
     Vec3f position;
     std::uint32_t vertex = no_vertex;
     Vec3f normal;   ///< of a surface; zero for a vertex
-    Vec3f stand;    ///< from where it looks past the occluder (core/mesh/grounding.h)
-    Vec3f horizon;  ///< normal of the occluder where it lies on it, else zero
+    Vec3f stand;    ///< start of the rays against the occluder (core/mesh/grounding.h)
+    Vec3f horizon;  ///< normal of the occluder for an origin on it, else zero
 
     bool on_surface() const { return vertex == no_vertex; }
     double cosine(const Vec3d& l) const { return dot(Vec3d(normal), l); }
-    /// Whether it looks in direction l.
-    bool looks(const Vec3d& l) const { return !on_surface() || cosine(l) > 0; }
+    /// Whether l points away from the surface; always true for a vertex.
+    bool faces(const Vec3d& l) const { return !on_surface() || cosine(l) > 0; }
     bool is_over_horizon(const Vec3f& l) const { return horizon == Vec3f() || dot(horizon, l) > 0; }
 };
 
-/// What the filter knows of the packet under way. Embree hands the context back unchanged.
+/// Data of the filter for the packet that is being traced. Embree hands the context back unchanged.
 struct PacketContext {
     RTCIntersectContext embree;
     const StrandScene* scene;
@@ -54,8 +54,7 @@ bool is_own(const PacketContext& context, unsigned lane, std::uint32_t segment) 
            enters_from_inside(context.scene->strands(), vertex, own, segment, context.direction);
 }
 
-/// Drops hits on a vertex's own adjacent segments and on what its ray enters from inside its own strand; when hits are
-/// collected, notes every other one and goes on.
+/// Drops hits on a vertex's own strand. Where hits are collected, stores every other hit and lets the ray continue.
 void filter(const RTCFilterFunctionNArguments* arguments) {
     auto& context = *reinterpret_cast<PacketContext*>(arguments->context);
     for (unsigned i = 0; i < arguments->N; ++i) {
@@ -100,12 +99,12 @@ void aim(Packet& packet, const StrandScene& scene, std::span<const RayOrigin> or
     }
 }
 
-/// Bit i: origin i looks in the packet's direction, and no occluder is in the way.
+/// Bit i: origin i faces the packet's direction, and no occluder is in the way.
 unsigned past_occluder(const StrandScene& scene, std::span<const RayOrigin> origins, const Vec3d& direction,
                        bool occluded, Packet& packet) {
     unsigned seen = 0;
     for (unsigned i = 0; i < origins.size(); ++i)
-        if (origins[i].looks(direction) && origins[i].is_over_horizon(packet.context.direction)) seen |= 1u << i;
+        if (origins[i].faces(direction) && origins[i].is_over_horizon(packet.context.direction)) seen |= 1u << i;
     if (!occluded) return seen;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -119,14 +118,14 @@ unsigned past_occluder(const StrandScene& scene, std::span<const RayOrigin> orig
     return seen;
 }
 
-/// What the rays of one call meet.
+/// What may stop the rays of one call.
 struct Obstacles {
     const StrandScene& scene;
-    bool opaque;    ///< all strands are
+    bool opaque;    ///< all strands are opaque
     bool occluded;  ///< the scene's occluder counts
 };
 
-/// Calls visit(origin number, direction number, T) for up to 16 origins and every direction in which they look.
+/// Calls visit(origin number, direction number, T) for up to 16 origins and every direction that they face.
 template <class Visit>
 void trace_packet(const Obstacles& obstacles, std::span<const RayOrigin> origins, std::span<const Vec3d> directions,
                   const Visit& visit) {
@@ -156,12 +155,12 @@ void trace_packet(const Obstacles& obstacles, std::span<const RayOrigin> origins
                 if (obstacles.opaque) return packet.rays.tfar[i] >= 0 ? 1.0 : 0.0;
                 return double{transmittance_of_crossings(scene.strands(), origins[i].position, l, hit[i])};
             };
-            if (origins[i].looks(directions[k])) visit(i, k, t());
+            if (origins[i].faces(directions[k])) visit(i, k, t());
         }
     }
 }
 
-/// Where points of the model stand that lie on the scene's occluder.
+/// Sets `stand` and `horizon` of the origins that lie on the scene's occluder.
 void stand_on_occluder(const StrandScene& scene, std::span<RayOrigin> origins, Progress& progress) {
     std::vector<Vec3f> positions;
     for (const RayOrigin& origin : origins) positions.push_back(origin.position);

@@ -11,7 +11,7 @@
 namespace hairbake {
 namespace {
 
-/// What the filter knows of the ray under way. Embree hands the context back unchanged.
+/// Data of the filter for the ray that is being traced. Embree hands the context back unchanged.
 struct RayContext {
     RTCIntersectContext embree;
     const StrandScene* scene;
@@ -21,7 +21,7 @@ struct RayContext {
     std::vector<std::uint32_t>* hit;  ///< segments met; null: the first hit ends the ray
 };
 
-/// Drops hits on the vertex's own strand; when hits are collected, notes every other one and goes on.
+/// Drops hits on the vertex's own strand. Where hits are collected, stores every other hit and lets the ray continue.
 void filter(const RTCFilterFunctionNArguments* arguments) {
     auto& context = *reinterpret_cast<RayContext*>(arguments->context);
     const std::uint32_t segment = context.scene->segment_of(RTCHitN_primID(arguments->hit, arguments->N, 0));
@@ -56,7 +56,7 @@ VertexRays::VertexRays(const StrandScene& scene, Progress& progress)
     grounded_ = ground_points(positions, *scene.occluder(), shadow_scale(positions, *scene.occluder()), progress);
 }
 
-/// Whether the vertex sees past the occluder, from where it stands on it if it does.
+/// Whether no occluder is in the way. A vertex on the occluder starts from its grounded place.
 bool VertexRays::past_occluder(std::uint32_t vertex, const Vec3f& l) const {
     Vec3f origin = scene_.strands().positions[vertex];
     const auto ground = std::lower_bound(grounded_.begin(), grounded_.end(), vertex,

@@ -1,4 +1,4 @@
-// Single rays from vertices of the hair.
+// Transmittance of single rays from vertices of the hair.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,15 @@
 
 namespace hairbake {
 
-/// Traces single rays by the rules of trace_transmittance (tracer.h), which is faster for many vertices in one
-/// direction; this is for directions that differ. Refers to the scene. Immutable: thread-safe.
+/// Traces single rays by the rules of trace_transmittance (tracer.h). That function is faster for many vertices in one
+/// direction; this class is for directions that differ from vertex to vertex. Immutable: thread-safe.
 class VertexRays {
 public:
-    /// Finds the vertices that lie on the scene's occluder. Throws Error(cancelled).
+    /// Finds the vertices that lie on the scene's occluder. `scene` must outlive this object.
+    /// Throws Error(cancelled).
     VertexRays(const StrandScene& scene, Progress& progress);
 
-    /// Transmittance seen from `vertex` in `direction` (unit), in [0, 1]: the same as
+    /// Transmittance of `vertex` in `direction` (unit), in [0, 1]: the same value as
     /// trace_transmittance(scene, {vertex}, {direction}).
     float transmittance(std::uint32_t vertex, const Vec3d& direction) const;
 
@@ -27,7 +28,7 @@ private:
 
     const StrandScene& scene_;
     bool opaque_;
-    std::vector<GroundedPoint> grounded_;  // in ascending order
+    std::vector<GroundedPoint> grounded_;  // ascending
 };
 
 }  // namespace hairbake

@@ -22,7 +22,7 @@ struct TransmittanceFacts {
     std::uint64_t occupied_voxels = 0;  ///< 0 but for the method volume
     std::uint64_t degenerate_segments = 0;
     std::optional<ErrorBar> error_bar;           ///< with reference_vertices > 0
-    std::shared_ptr<const DensityGrid> density;  ///< what the sweep walked; null but for the method volume
+    std::shared_ptr<const DensityGrid> density;  ///< extinction of the sweep; null unless density.vdb is asked for
 };
 
 /// How the maps came about: IrradianceMaps without its maps (irradiance_maps.h says what each means).

@@ -65,6 +65,7 @@ void run_transmittance_stage(StageContext& context, StagePart& part) {
         TransmittanceScene what{strands, context.inputs.occluder()};
         what.receiver = context.inputs.receiver();
         what.receiver_is_occluder = context.inputs.receiver_is_occluder();
+        what.keep_density = request.wants("vdb");
         naming_file(*request.hair, [&] { baked = transmittance_of(what, settings, scene, progress); });
         facts.degenerate_segments = strands.degenerate_segment_count;
     });
@@ -83,6 +84,9 @@ void run_transmittance_stage(StageContext& context, StagePart& part) {
     add_array(part, request, transmittance_sh_kind(), std::move(baked.sh));
     add_array(part, request, bent_cone_kind(), std::move(baked.bent_cone));
     add_array(part, request, receiver_kind(), std::move(baked.receiver));
+    for (NamedArray& other : baked.others)
+        for (const ArrayKind& kind : array_kinds())
+            if (kind.name == other.name) add_array(part, request, kind, std::move(other.values));
     part.facts = std::move(facts);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/assert.h"
 #include "core/base/parallel.h"
 #include "core/base/spherical_harmonics.h"
 
@@ -18,6 +19,7 @@ std::size_t DirectionMoments::count_for(int sh_bands, bool bent_cone) {
 
 DirectionMoments::DirectionMoments(std::span<const Vec3d> directions, int sh_bands, bool bent_cone)
     : directions_(directions.size()), count_(count_for(sh_bands, bent_cone)) {
+    HAIRBAKE_ASSERT(sh_bands >= 0 && sh_bands <= 4);
     const ShBasis basis(4);
     std::vector<double> y(static_cast<std::size_t>(basis.count()));
     for (const Vec3d& w : directions) {
@@ -31,6 +33,7 @@ DirectionMoments::DirectionMoments(std::span<const Vec3d> directions, int sh_ban
 }
 
 void sh_of_moments(std::span<const float> moments, std::span<float> sh) {
+    HAIRBAKE_ASSERT(!sh.empty() && sh.size() <= 16 && moments.size() >= sh.size());
     const auto zeroth = static_cast<float>(2 * std::sqrt(pi)), first = static_cast<float>(2 * std::sqrt(3 * pi));
     sh[0] = zeroth * moments[0];
     if (sh.size() < 4) return;

@@ -1,4 +1,4 @@
-// The request's `transmittance` block: how the light that reaches a vertex is computed, and what is kept of it.
+// The request's `transmittance` block: how the light that reaches a vertex is computed, and which results are kept.
 #pragma once
 
 #include <cstdint>
@@ -7,18 +7,18 @@
 namespace hairbake {
 
 enum class DirectionSet {
-    fibonacci,   ///< spherical Fibonacci lattice (any count): the default, error about N^-3/4 and no seed
+    fibonacci,   ///< spherical Fibonacci lattice (any count): the default; error about N^-3/4, no seed
     stratified,  ///< n x n jittered cells of equal solid angle in (cos theta, phi) (square counts), seeded
     random       ///< independent and uniform: the published method's 100 random directions, seeded
 };
 
 enum class TransmittanceMethod {
     volume,        ///< mean field: density grid, sheared sweep, near-field correction
-    opacity_maps,  ///< layered deep opacity maps, the published estimator, kept for comparison
-    trace          ///< Embree, every vertex against the true strands: slow, the truth
+    opacity_maps,  ///< layered deep opacity maps, the published estimator, for comparison
+    trace          ///< Embree traces every vertex against the true strands: slow, the reference
 };
 
-/// Of the method opacity_maps (spec, section 3b).
+/// Settings of the method opacity_maps.
 struct OpacityMapSettings {
     int layers = 3;            ///< 1 to 16
     double layer_spacing = 2;  ///< each layer is this many times as thick as the one before, 1 to 16

@@ -23,18 +23,17 @@ namespace {
 using Leaf = openvdb::FloatTree::LeafNodeType;
 static_assert(Leaf::SIZE == ExtinctionBricks::voxels, "a brick is a leaf");
 
-Leaf* make_leaf(const GridFrame& frame, const SortedStrands& sorted, const ExtinctionBricks& bricks, std::size_t b) {
-    const auto place = frame.brick_coordinates(sorted.bricks[b]);
+Leaf* make_leaf(const HairVolume& volume, std::size_t b) {
+    const auto place = volume.frame.brick_coordinates(volume.sorted.bricks[b]);
     auto* leaf = new Leaf(openvdb::Coord(8 * place[0], 8 * place[1], 8 * place[2]), 0.0f, false);
-    const float* trace = &bricks.trace[b * ExtinctionBricks::voxels];
-    const auto inverse_h = static_cast<float>(1 / frame.voxel_size);
+    const auto inverse_h = static_cast<float>(1 / volume.frame.voxel_size);
     for (openvdb::Index v = 0; v < Leaf::SIZE; ++v)
-        if (trace[v] > 0) leaf->setValueOn(v, trace[v] * inverse_h);
+        if (const float trace = volume.bricks.trace(b, v); trace > 0) leaf->setValueOn(v, trace * inverse_h);
     return leaf;
 }
 
-/// Places the voxels in model space. OpenVDB takes no voxels of a volume below 3e-15 (a side of 1.45e-5): then the grid
-/// stays in voxels, and its metadata tells where they are.
+/// Places the voxels in model space. OpenVDB takes no voxels of a volume below 3e-15 (a side of 1.45e-5). Then the grid
+/// stays in voxel space, and its metadata gives the place of the voxels.
 void place_in_model(const GridFrame& frame, openvdb::FloatGrid& grid) {
     const double h = frame.voxel_size;
     const openvdb::Vec3d first =
@@ -49,8 +48,8 @@ void place_in_model(const GridFrame& frame, openvdb::FloatGrid& grid) {
     grid.setTransform(transform);
 }
 
-/// What openvdb::io::File writes, to any stream: io::Stream would leave out the offsets by which readers of large files
-/// seek.
+/// Writes the format of openvdb::io::File to any stream. (io::Stream leaves out the offsets with which readers of large
+/// files seek.)
 class SeekableArchive : public openvdb::io::Archive {
 public:
     void write(std::ostream& stream, const openvdb::GridBase::ConstPtr& grid) const {
@@ -58,12 +57,12 @@ public:
     }
 };
 
-/// Puts the digest of the contents in the place of the random UUID of the header, which serves to tell files apart.
+/// Replaces the random UUID of the header, by which programs tell files apart, by a digest of the contents.
 void replace_tag(std::string& bytes) {
-    constexpr std::size_t begin = 8 + 3 * 4 + 1, length = 36;  // behind the magic number, three versions and a flag
+    constexpr std::size_t begin = 8 + 3 * 4 + 1, length = 36;  // after the magic number, three versions and a flag
     const auto dash = [&](std::size_t i) { return bytes.size() > begin + i && bytes[begin + i] == '-'; };
     if (!dash(8) || !dash(13) || !dash(18) || !dash(23))
-        throw Error(ErrorKind::internal, "this version of OpenVDB has another file header than the one known");
+        throw Error(ErrorKind::internal, "this version of OpenVDB writes an unknown file header");
     std::fill_n(bytes.begin() + begin, length, '0');
     const std::string digest = Digest().add(bytes).hex();
     const std::string tag = digest.substr(0, 8) + '-' + digest.substr(8, 4) + '-' + digest.substr(12, 4) + '-' +
@@ -73,18 +72,17 @@ void replace_tag(std::string& bytes) {
 
 }  // namespace
 
-DensityGrid::DensityGrid(const GridFrame& frame, const SortedStrands& sorted, const ExtinctionBricks& bricks)
-    : impl_(std::make_unique<Impl>()) {
+DensityGrid::DensityGrid(const HairVolume& volume) : impl_(std::make_unique<Impl>()) {
     openvdb::initialize();
     impl_->grid = openvdb::FloatGrid::create(0.0f);
     impl_->grid->setName("density");
     impl_->grid->setGridClass(openvdb::GRID_FOG_VOLUME);
-    place_in_model(frame, *impl_->grid);
-    std::vector<Leaf*> leaves(sorted.brick_count());
+    place_in_model(volume.frame, *impl_->grid);
+    std::vector<Leaf*> leaves(volume.sorted.brick_count());
     parallel_for(leaves.size(), 64, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t b = begin; b < end; ++b) leaves[b] = make_leaf(frame, sorted, bricks, b);
+        for (std::size_t b = begin; b < end; ++b) leaves[b] = make_leaf(volume, b);
     });
-    for (Leaf* leaf : leaves) impl_->grid->tree().addLeaf(leaf);  // the tree owns it from here
+    for (Leaf* leaf : leaves) impl_->grid->tree().addLeaf(leaf);  // the tree takes ownership
 }
 
 DensityGrid::~DensityGrid() = default;

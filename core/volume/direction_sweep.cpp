@@ -8,31 +8,27 @@
 #include <utility>
 
 #include "core/base/parallel.h"
-#include "core/volume/receiver_slots.h"
+#include "core/volume/point_slots.h"
 #include "core/volume/slice_layout.h"
+#include "core/volume/sweep.h"
 
 namespace hairbake {
 namespace {
 
-/// Walks along one axis that run at the same time at most, whatever the machine: each thread has sums of its own, 4
-/// bytes a vertex and component. With many components fewer walks run, so that the sums take no more than 512 bytes a
-/// vertex.
-std::size_t most_walks(std::size_t components) { return std::min<std::size_t>(16, 128 / components); }
+using DirectionGroup = std::vector<std::uint32_t>;  ///< indices into the direction set
 
 int major_axis(const Vec3d& l) {
     const double x = std::abs(l.x), y = std::abs(l.y), z = std::abs(l.z);
     return x >= y && x >= z ? 0 : y >= z ? 1 : 2;
 }
 
-/// Directions with one major axis and sign, in groups of nearly equal size of at most kSweepLanes.
-std::vector<std::vector<SweepDirection>> group_directions(const SweepRequest& request, int axis) {
-    std::vector<std::vector<SweepDirection>> groups;
+/// The directions with this major axis in groups with one sign, of nearly equal size and at most kSweepLanes.
+std::vector<DirectionGroup> group_directions(std::span<const Vec3d> directions, int axis) {
+    std::vector<DirectionGroup> groups;
     for (const double sign : {1.0, -1.0}) {
-        std::vector<SweepDirection> side;
-        for (std::size_t k = 0; k < request.directions.size(); ++k) {
-            const Vec3d& l = request.directions[k];
-            if (major_axis(l) == axis && l[axis] * sign > 0) side.push_back({l, request.moments.weights(k)});
-        }
+        DirectionGroup side;
+        for (std::uint32_t k = 0; k < directions.size(); ++k)
+            if (major_axis(directions[k]) == axis && directions[k][axis] * sign > 0) side.push_back(k);
         const std::size_t count = (side.size() + kSweepLanes - 1) / kSweepLanes;
         for (std::size_t g = 0; g < count; ++g)
             groups.emplace_back(side.begin() + static_cast<std::ptrdiff_t>(g * side.size() / count),
@@ -41,117 +37,139 @@ std::vector<std::vector<SweepDirection>> group_directions(const SweepRequest& re
     return groups;
 }
 
-/// Points that a sweep reads, and the occluder's shadow on them.
-struct Shadowed {
+/// A point set and the readers that share it.
+struct ReadSet {
+    const PointSet* points;
+    std::vector<const SweepReader*> readers;
+    std::vector<std::size_t> places;  ///< of the readers, in the caller's order
+};
+
+std::vector<ReadSet> group_readers(std::span<const SweepReader* const> readers) {
+    std::vector<ReadSet> sets;
+    for (std::size_t r = 0; r < readers.size(); ++r) {
+        const PointSet* points = &readers[r]->points();
+        auto set = std::find_if(sets.begin(), sets.end(), [&](const ReadSet& s) { return s.points == points; });
+        if (set == sets.end()) set = sets.insert(sets.end(), {points, {}, {}});
+        set->readers.push_back(readers[r]);
+        set->places.push_back(r);
+    }
+    return sets;
+}
+
+/// Walks along one axis that may run at the same time, for any machine: each thread has sums of its own, 4 bytes for
+/// each point and component. With many components fewer walks run, so that the sums take at most 512 bytes a point.
+std::size_t most_walks(std::span<const ReadSet> sets) {
+    std::size_t components = 1;
+    for (const ReadSet& set : sets) {
+        std::size_t of_set = 0;
+        for (const SweepReader* reader : set.readers) of_set += reader->scales().size();
+        components = std::max(components, of_set);
+    }
+    return std::clamp<std::size_t>(128 / components, 1, 16);
+}
+
+/// The occluder's shadow on the slots of a point set.
+struct SlotShadow {
     const PointShadow& shadow;
     OccluderShadow::Points points;
 
-    Shadowed(const PointShadow& s, std::span<const std::uint32_t> point_of_slot)
-        : shadow(s), points(s.points(point_of_slot)) {}
-    void look(std::span<const Vec3d> directions, const Progress& progress, OccluderShadow::Scratch& scratch,
-              std::vector<std::uint8_t>& seen) const {
-        shadow.occluder().look(points, directions, progress, scratch, seen);
+    SlotShadow(const PointSet& set, const PointSlots& slots) : shadow(*set.shadow) {
+        std::vector<std::uint32_t> model(slots.point);
+        for (std::uint32_t& point : model)
+            if (point != PointSlots::no_point && !set.model_index.empty()) point = set.model_index[point];
+        points = shadow.points(model);
     }
 };
 
-/// [slot] the model's vertex, or SliceLayout::no_vertex.
-std::vector<std::uint32_t> vertices_of_slots(const SliceLayout& layout, const SortedStrands& sorted) {
-    std::vector<std::uint32_t> vertices(layout.slot_vertex);
-    for (std::uint32_t& v : vertices)
-        if (v != SliceLayout::no_vertex) v = sorted.vertices[v];
-    return vertices;
-}
-
-/// One axis: the grid in slices, and who reads there.
+/// One axis: the grid in slices, and the slots of each point set.
 struct Axis {
+    struct Set {
+        const ReadSet& read;
+        PointSlots slots;
+        std::optional<SlotShadow> shadow;
+    };
     SliceLayout layout;
-    std::optional<ReceiverSlots> receivers;
-    std::optional<Shadowed> vertex_shadow, receiver_shadow;
+    std::vector<Set> sets;
 
-    Axis(SliceLayout l, const GridFrame& frame, const SortedStrands& sorted, const SweepRequest& request)
-        : layout(std::move(l)) {
-        if (request.vertex_shadow) vertex_shadow.emplace(*request.vertex_shadow, vertices_of_slots(layout, sorted));
-        if (!request.receiver) return;
-        receivers = make_receiver_slots(frame, sorted, layout, *request.receiver);
-        if (request.receiver_shadow) receiver_shadow.emplace(*request.receiver_shadow, receivers->point);
-    }
-    SweepTotals empty_totals(std::size_t moments) const {
-        SweepTotals totals;
-        totals.vertices = SweepSums(layout.slot_vertex.size(), moments);
-        if (receivers) totals.receivers = SweepSums(receivers->slots(), SweepTotals::receiver_components);
-        return totals;
+    Axis(const HairVolume& volume, int axis, std::span<const ReadSet> read_sets, const Progress& progress)
+        : layout(make_slice_layout(volume, axis, progress)) {
+        for (const ReadSet& read : read_sets) {
+            Set& set = sets.emplace_back(Set{read, make_point_slots(volume, layout, *read.points), {}});
+            progress.check();
+            if (read.points->shadow) set.shadow.emplace(*read.points, set.slots);
+        }
     }
 };
 
-/// What one thread needs; reused from walk to walk.
-struct WalkScratch {
+/// What one thread fills and needs for all its walks along an axis.
+struct Worker {
+    std::vector<std::vector<SweepSums>> sums;     ///< [set][reader]
+    std::vector<std::vector<std::uint8_t>> seen;  ///< [set], SweepStop::seen
     SweepScratch sweep;
     OccluderShadow::Scratch raster;
-    std::vector<std::uint8_t> vertices_see, receivers_see;
+
+    explicit Worker(const Axis& axis) : seen(axis.sets.size()) {
+        for (const Axis::Set& set : axis.sets) {
+            auto& of_set = sums.emplace_back();
+            for (const SweepReader* reader : set.read.readers)
+                of_set.emplace_back(set.slots.size(), reader->scales().size());
+        }
+    }
 };
 
-void sweep_group(const Axis& axis, std::span<const SweepDirection> group, float scale, const Progress& progress,
-                 WalkScratch& scratch, SweepTotals& totals) {
-    std::vector<Vec3d> directions;
-    for (const SweepDirection& direction : group) directions.push_back(direction.l);
-    if (axis.vertex_shadow) axis.vertex_shadow->look(directions, progress, scratch.raster, scratch.vertices_see);
-    if (axis.receiver_shadow) axis.receiver_shadow->look(directions, progress, scratch.raster, scratch.receivers_see);
-    sweep(axis.layout, axis.receivers ? &*axis.receivers : nullptr, group, scale,
-          {scratch.vertices_see, scratch.receivers_see}, scratch.sweep, totals);
+void sweep_group(const Axis& axis, std::span<const Vec3d> directions, const DirectionGroup& group,
+                 const Progress& progress, Worker& worker) {
+    std::vector<Vec3d> lights;
+    for (const std::uint32_t k : group) lights.push_back(directions[k]);
+    std::vector<SweepStop> stops;
+    for (std::size_t i = 0; i < axis.sets.size(); ++i) {
+        const Axis::Set& set = axis.sets[i];
+        if (set.shadow)
+            set.shadow->shadow.occluder().visible(set.shadow->points, lights, progress, worker.raster, worker.seen[i]);
+        stops.push_back({set.slots, worker.seen[i], set.read.readers, worker.sums[i]});
+    }
+    sweep(axis.layout, directions, group, stops, worker.sweep);
 }
 
-/// Sweeps all groups of one axis and adds what they bring. `swept` is told how many directions are done.
-void sweep_axis(const Axis& axis, std::size_t moments, std::span<const std::vector<SweepDirection>> groups,
-                const Progress& progress, const std::function<void(std::size_t)>& swept, DirectionSums& sums) {
-    const std::size_t walks = std::min(groups.size(), most_walks(moments));
-    std::vector<SweepTotals> totals(walks);
+/// Sweeps all groups of one axis and adds what they bring to `sums`. Calls swept(n) after every n directions.
+void sweep_axis(const Axis& axis, std::span<const Vec3d> directions, std::span<const DirectionGroup> groups,
+                std::size_t walks, const Progress& progress, const std::function<void(std::size_t)>& swept,
+                std::vector<FixedPointSums>& sums) {
+    walks = std::min(groups.size(), walks);
+    std::vector<std::vector<SweepSums>> parts(sums.size(), std::vector<SweepSums>(walks));  // [reader][walk]
     std::atomic<std::size_t> next{0};
     parallel_for(walks, 1, [&](std::size_t w, std::size_t) {
-        WalkScratch scratch;
-        bool first = true;
+        std::optional<Worker> worker;  // only where there is a group left
         for (std::size_t g = next++; g < groups.size(); g = next++) {
             progress.check();
-            if (std::exchange(first, false)) totals[w] = axis.empty_totals(moments);
-            sweep_group(axis, groups[g], sums.vertices.scale(), progress, scratch, totals[w]);
+            if (!worker) worker.emplace(axis);
+            sweep_group(axis, directions, groups[g], progress, *worker);
             swept(groups[g].size());
         }
+        for (std::size_t i = 0; worker && i < axis.sets.size(); ++i)
+            for (std::size_t r = 0; r < worker->sums[i].size(); ++r)
+                parts[axis.sets[i].read.places[r]][w] = std::move(worker->sums[i][r]);
     });
-    sums.vertices.add(axis.layout.slot_vertex, totals, &SweepTotals::vertices);
-    if (axis.receivers) sums.receivers.add(axis.receivers->point, totals, &SweepTotals::receivers);
+    for (const Axis::Set& set : axis.sets)
+        for (const std::size_t place : set.read.places) sums[place].add(set.slots.point, parts[place]);
 }
 
 }  // namespace
 
-void ItemSums::add(std::span<const std::uint32_t> item_of_slot, std::span<const SweepTotals> parts,
-                   SweepSums SweepTotals::*kind) {
-    parallel_for(item_of_slot.size(), 1 << 15, [&](std::size_t begin, std::size_t end) {
-        for (const SweepTotals& totals : parts) {
-            const SweepSums& part = totals.*kind;
-            for (std::size_t i = begin; i < end && part.slots > 0; ++i) {
-                if (item_of_slot[i] == SliceLayout::no_vertex) continue;
-                std::int32_t* sum = &values_[std::size_t{item_of_slot[i]} * components_];
-                for (std::size_t c = 0; c < components_; ++c) sum[c] += part.values[c * part.slots + i];
-            }
-        }
-    });
-}
-
-DirectionSums sweep_directions(const GridFrame& frame, const SortedStrands& sorted, const ExtinctionBricks& bricks,
-                               const SweepRequest& request, Progress& progress) {
-    const std::size_t count = request.directions.size();
-    const float scale = sweep_scale(static_cast<int>(count));
-    const std::size_t points = request.receiver ? request.receiver->positions.size() : 0;
-    DirectionSums sums{ItemSums(sorted.vertices.size(), request.moments.count(), scale),
-                       ItemSums(points, SweepTotals::receiver_components, scale)};
+std::vector<FixedPointSums> sweep_directions(const HairVolume& volume, std::span<const Vec3d> directions,
+                                             std::span<const SweepReader* const> readers, Progress& progress) {
+    const std::vector<ReadSet> sets = group_readers(readers);
+    std::vector<FixedPointSums> sums;
+    for (const SweepReader* reader : readers) sums.emplace_back(reader->points().size(), reader->scales());
     std::atomic<std::size_t> done{0};
+    const auto swept = [&](std::size_t n) {
+        progress.report(static_cast<double>(done += n) / static_cast<double>(directions.size()));
+    };
     for (int a = 0; a < 3; ++a) {
-        const auto groups = group_directions(request, a);
+        const auto groups = group_directions(directions, a);
         if (groups.empty()) continue;
-        const Axis axis(make_slice_layout(frame, sorted, bricks, a, progress), frame, sorted, request);
-        const auto swept = [&](std::size_t n) {
-            progress.report(static_cast<double>(done += n) / static_cast<double>(count));
-        };
-        sweep_axis(axis, request.moments.count(), groups, progress, swept, sums);
+        const Axis axis(volume, a, sets, progress);
+        sweep_axis(axis, directions, groups, most_walks(sets), progress, swept, sums);
     }
     return sums;
 }

@@ -1,62 +1,24 @@
-// Sweeps all directions, axis by axis, and sums up what every vertex and every point of the receiver gets.
+// Sweeps all directions, axis by axis, and adds up what every reader takes from them.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "core/base/progress.h"
-#include "core/mesh/triangle_mesh.h"
-#include "core/visibility/direction_moments.h"
-#include "core/volume/extinction_bricks.h"
-#include "core/volume/grid_frame.h"
-#include "core/volume/point_shadow.h"
-#include "core/volume/strand_pieces.h"
-#include "core/volume/sweep.h"
+#include "core/base/vec.h"
+#include "core/volume/fixed_point_sums.h"
+#include "core/volume/hair_volume.h"
+#include "core/volume/sweep_reader.h"
 
 namespace hairbake {
 
-/// Sums over all directions by item (vertex in the order of SortedStrands, or position of the receiver), as integers of
-/// the sweep's scale.
-class ItemSums {
-public:
-    ItemSums(std::size_t items, std::size_t components, float scale)
-        : components_(components), scale_(scale), values_(items * components) {}
-
-    /// Adds slots to items: item_of_slot[i] is the item of slot i, or SliceLayout::no_vertex.
-    void add(std::span<const std::uint32_t> item_of_slot, std::span<const SweepTotals> parts,
-             SweepSums SweepTotals::*kind);
-
-    std::size_t items() const { return components_ == 0 ? 0 : values_.size() / components_; }
-    float scale() const { return scale_; }
-    /// [components] of one item; sum = integer / scale().
-    std::span<const std::int32_t> of(std::size_t item) const {
-        return {values_.data() + item * components_, components_};
-    }
-
-private:
-    std::size_t components_;
-    float scale_;
-    std::vector<std::int32_t> values_;  ///< [item * components + component]
-};
-
-struct DirectionSums {
-    ItemSums vertices;   ///< the components are the moments
-    ItemSums receivers;  ///< the components are those of HemisphereSums
-};
-
-/// What is asked of a sweep.
-struct SweepRequest {
-    std::span<const Vec3d> directions;
-    const DirectionMoments& moments;         ///< of the directions; at least four
-    const TriangleMesh* receiver = nullptr;  ///< whose positions are read
-    /// Shadows of an occluder on the model's vertices and on the receiver's positions; null for none.
-    const PointShadow *vertex_shadow = nullptr, *receiver_shadow = nullptr;
-};
-
-/// Sweeps `bricks` in every direction. Throws Error(out_of_resources),
-/// Error(cancelled).
-DirectionSums sweep_directions(const GridFrame& frame, const SortedStrands& sorted, const ExtinctionBricks& bricks,
-                               const SweepRequest& request, Progress& progress);
+/// Returns the sums of each of `readers`, in their order. Readers with the same point set share its transmittance.
+///
+/// directions: unit vectors away from the hair; readers know them by their index
+/// readers:    may be of any number of point sets
+///
+/// The same bits for any thread count. Throws Error(out_of_resources), Error(cancelled).
+std::vector<FixedPointSums> sweep_directions(const HairVolume& volume, std::span<const Vec3d> directions,
+                                             std::span<const SweepReader* const> readers, Progress& progress);
 
 }  // namespace hairbake

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 
@@ -15,14 +16,14 @@ namespace {
 /// One voxel while it is filled: the six components, padded to a power of two.
 using Tensor = std::array<float, 8>;
 
-/// A strand crosses a ray's way through a voxel at most once: its voxel lets 1 - f through, not e^-f, f being opacity *
-/// width * crossing length * sine / h^2. -ln(1 - f) = f (1 + f / 2 + ...), and f / 2 averaged with f over random lines
-/// through a cube is (opacity * width / h) * chord / 2 * (2/3) / (pi/4), with the cube's mean chord through a random
-/// point, 0.897. With this the mean over random placements is e^-(mean extinction), as it must be (E[(1 - f)^n] = e^(-f
-/// mean n)).
+/// A strand crosses a ray's way through a voxel at most once. The voxel then lets 1 - f through, not e^-f, where f is
+/// opacity * width * crossing length * sine / h^2. -ln(1 - f) = f (1 + f / 2 + ...). The average of f / 2, weighted
+/// with f, over random lines through a cube is (opacity * width / h) * chord / 2 * (2/3) / (pi/4), where 0.897 is the
+/// cube's mean chord through a random point. With this term the mean over random placements is e^-(mean extinction), as
+/// it must be: E[(1 - f)^n] = e^(-f mean n).
 constexpr float disjoint_share = 0.381f;
 
-/// Adds what a piece brings: weight * length * t t^T.
+/// Adds the tensor of a piece: weight * length * t t^T.
 void add_piece(const StrandPiece& piece, Tensor& sum) {
     const Vec3f& step = piece.step;
     const Vec3f s = piece.weight * (1 + disjoint_share * piece.weight) / length(step) * step;
@@ -30,9 +31,9 @@ void add_piece(const StrandPiece& piece, Tensor& sum) {
     for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += added[c];
 }
 
-/// sqrt(tr (tr - l.T.l)) is exact where all strands of a voxel are parallel (tr T^2 = tr^2) and too large where they
-/// are not: by sqrt(2/3) / (pi/4) in isotropic voxels (tr T^2 = tr^2 / 3). The factor, linear in tr T^2 between these
-/// two cases, takes the excess out.
+/// sqrt(tr (tr - l.T.l)) is exact where all strands of a voxel are parallel (tr T^2 = tr^2). Elsewhere it is too large:
+/// by sqrt(2/3) / (pi/4) in isotropic voxels (tr T^2 = tr^2 / 3). The factor removes the excess; it is linear in tr T^2
+/// between these two cases.
 float mixing_factor(const Tensor& t) {
     const float tr = t[0] + t[1] + t[2];
     const float square = t[0] * t[0] + t[1] * t[1] + t[2] * t[2] + 2 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]);
@@ -41,42 +42,57 @@ float mixing_factor(const Tensor& t) {
     return isotropic + (1 - isotropic) * combed;
 }
 
-/// Brighter than any half float would be opaque many times over; 60,000 stays clear of infinity after rounding.
+/// Larger values are opaque many times over; 60,000 stays below infinity after rounding to a half float.
 float to_storable(float value) { return std::clamp(value, -60000.0f, 60000.0f); }
 
-void store_voxel(const Tensor& tensor, std::size_t brick, std::size_t voxel, ExtinctionBricks& out) {
+/// Returns whether the voxel has extinction after rounding.
+bool store_voxel(const Tensor& tensor, std::size_t brick, std::size_t voxel, ExtinctionBricks& out) {
     const float trace = tensor[0] + tensor[1] + tensor[2];
-    if (!(trace > 0)) return;
+    if (!(trace > 0)) return false;
     const float factor = mixing_factor(tensor);
-    float stored_trace = 0;
     for (std::size_t c = 0; c < ExtinctionBricks::components; ++c) {
         const Imath::half half(to_storable(factor * tensor[c]));
         out.half[(brick * ExtinctionBricks::components + c) * ExtinctionBricks::voxels + voxel] = half.bits();
-        if (c < 3) stored_trace += half;
     }
-    out.trace[brick * ExtinctionBricks::voxels + voxel] = stored_trace;
+    return out.trace(brick, voxel) > 0;
 }
 
-void fill_brick(const SortedStrands& sorted, std::size_t brick, ExtinctionBricks& out) {
+/// Returns the number of the brick's occupied voxels.
+std::uint64_t fill_brick(const SortedStrands& sorted, std::size_t brick, ExtinctionBricks& out) {
+    std::uint64_t occupied = 0;
     for (std::size_t voxel = 0; voxel < ExtinctionBricks::voxels; ++voxel) {
         const auto pieces = sorted.pieces_in(brick, voxel);
         if (pieces.empty()) continue;
         Tensor sum{};
         for (const StrandPiece& piece : pieces) add_piece(piece, sum);
-        store_voxel(sum, brick, voxel, out);
+        occupied += store_voxel(sum, brick, voxel, out) ? 1 : 0;
     }
+    return occupied;
 }
 
 }  // namespace
 
+float ExtinctionBricks::trace(std::size_t brick, std::size_t voxel) const {
+    float sum = 0;
+    for (int c = 0; c < 3; ++c) {
+        Imath::half value;
+        value.setBits(component(brick, c)[voxel]);
+        sum += value;
+    }
+    return sum;
+}
+
 ExtinctionBricks deposit_strands(const SortedStrands& sorted, Progress& progress) {
     ExtinctionBricks bricks;
     bricks.half.resize(sorted.brick_count() * ExtinctionBricks::components * ExtinctionBricks::voxels);
-    bricks.trace.resize(sorted.brick_count() * ExtinctionBricks::voxels);
+    std::atomic<std::uint64_t> occupied{0};
     parallel_for(sorted.brick_count(), 16, [&](std::size_t begin, std::size_t end) {
         progress.check();
-        for (std::size_t b = begin; b < end; ++b) fill_brick(sorted, b, bricks);
+        std::uint64_t of_piece = 0;
+        for (std::size_t b = begin; b < end; ++b) of_piece += fill_brick(sorted, b, bricks);
+        occupied += of_piece;
     });
+    bricks.occupied_voxels = occupied;
     return bricks;
 }
 

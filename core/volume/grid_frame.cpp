@@ -4,20 +4,23 @@
 #include <cmath>
 #include <string>
 
+#include "core/base/assert.h"
 #include "core/base/error.h"
 
 namespace hairbake {
 
 double typical_largest_width(const std::vector<float>& widths) {
-    // All of them: widths go with the place in the strand, and a step through the model may go with it as well.
+    HAIRBAKE_ASSERT(!widths.empty());
+    // A sample at regular steps would be wrong: the width depends on the place in the strand, and the steps may fall on
+    // the same place of every strand.
     std::vector<float> ordered = widths;
     const std::size_t rank = (ordered.size() - 1) * 95 / 100;
     std::nth_element(ordered.begin(), ordered.begin() + static_cast<std::ptrdiff_t>(rank), ordered.end());
     return ordered[rank];
 }
 
-GridFrame make_grid_frame(const StrandGeometry& strands, const TransmittanceSettings& settings,
-                          bool* bounded_by_width) {
+GridFrame make_grid_frame(const StrandGeometry& strands, const TransmittanceSettings& settings) {
+    HAIRBAKE_ASSERT(strands.vertex_count() > 0);
     if (strands.vertex_count() >> 31)
         throw Error(ErrorKind::out_of_resources, "the hair model has " + std::to_string(strands.vertex_count()) +
                                                      " vertices; the volume method takes fewer than 2147483648");
@@ -31,12 +34,12 @@ GridFrame make_grid_frame(const StrandGeometry& strands, const TransmittanceSett
     const double least = 2 * typical_largest_width(strands.widths);
     GridFrame frame;
     frame.voxel_size = std::max(asked, least);
-    *bounded_by_width = least > asked;
+    frame.bounded_by_width = least > asked;
     if (!(frame.voxel_size > 1e-30 && frame.voxel_size < 1e30))
         throw Error(ErrorKind::bad_input, "the hair model is " + std::to_string(longest) +
                                               " units large, which makes voxels of " +
                                               std::to_string(frame.voxel_size) + "; allowed are 1e-30 to 1e30");
-    // 1,024 voxels and a rounding error of the division above.
+    // Half a voxel more than 1,024, for the rounding of the division above.
     if (longest / frame.voxel_size > 1024.5)
         throw Error(ErrorKind::usage,
                     "transmittance.voxel_size is " + std::to_string(asked) + ", which makes " +

@@ -7,18 +7,19 @@
 
 #include "core/base/vec.h"
 #include "core/hair/strand_geometry.h"
-#include "core/volume/transmittance.h"
+#include "core/visibility/transmittance_settings.h"
 
 namespace hairbake {
 
-/// Grid space has its origin at `origin`, one voxel per unit, and the model's axes. Voxel (i, j, k) covers [i, i+1) x
-/// [j, j+1) x [k, k+1). Bricks are blocks of 8^3 voxels, the leaves of OpenVDB.
+/// Grid space has its origin at `origin`, one voxel per unit, and the model's axes. Voxel (i, j, k) covers
+/// [i, i + 1) x [j, j + 1) x [k, k + 1). Bricks are blocks of 8^3 voxels, the leaves of OpenVDB.
 struct GridFrame {
     static constexpr int brick_side = 8;
 
-    Vec3f origin;               ///< model space
-    double voxel_size = 1;      ///< h, model units
-    std::array<int, 3> bricks;  ///< per axis
+    Vec3f origin;                   ///< model space
+    double voxel_size = 1;          ///< h, model units
+    std::array<int, 3> bricks;      ///< per axis
+    bool bounded_by_width = false;  ///< the widths decided voxel_size, not the request
 
     Vec3f to_grid(const Vec3f& p) const { return (p - origin) * static_cast<float>(1 / voxel_size); }
     int voxels(int axis) const { return bricks[axis] * brick_side; }
@@ -47,13 +48,14 @@ struct GridFrame {
     static int voxel_in_brick(int i, int j, int k) { return (i & 7) << 6 | (j & 7) << 3 | (k & 7); }
 };
 
-/// 95th percentile of the widths (not empty).
+/// 95th percentile of `widths` (not empty).
 double typical_largest_width(const std::vector<float>& widths);
 
-/// The grid that `settings` asks for around all strands, with a margin of one voxel. The mean field needs strands well
-/// thinner than a voxel: h = max(what was asked for, 2 * 95th percentile of the widths).
-/// `bounded_by_width` tells that the widths decided. Throws Error(usage) when voxel_size asks for more than 1,024
-/// voxels on the longest axis.
-GridFrame make_grid_frame(const StrandGeometry& strands, const TransmittanceSettings& settings, bool* bounded_by_width);
+/// The grid that `settings` asks for around all strands (at least one vertex), with a margin of one voxel. The mean
+/// field needs strands well thinner than a voxel: h = max(size asked for, 2 * 95th percentile of the widths).
+/// Throws Error(usage) for voxels out of range and for more than 1,024 voxels on the longest axis.
+/// Throws Error(bad_input) for bounds that no grid can hold.
+/// Throws Error(out_of_resources) for 2^31 vertices or more.
+GridFrame make_grid_frame(const StrandGeometry& strands, const TransmittanceSettings& settings);
 
 }  // namespace hairbake

@@ -10,120 +10,41 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/assert.h"
 #include "core/base/parallel.h"
 #include "core/volume/near_field.h"
-#include "core/volume/near_field_window.h"
-#include "core/volume/neighborhood.h"
+#include "core/volume/near_field_pieces-inl.h"
+
+#ifndef HAIRBAKE_NEAR_FIELD_INPUT
+#define HAIRBAKE_NEAR_FIELD_INPUT
+namespace hairbake {
+
+/// What the correction of every brick reads.
+struct NearFieldInput {
+    const StrandGeometry& strands;
+    const HairVolume& volume;
+    const NearFieldWindow& window;
+    std::span<const std::vector<AngularMean>> means;
+    float own_unit;  ///< exponent for one side of the own strand, over opacity * width
+};
+
+}  // namespace hairbake
+#endif
 
 HWY_BEFORE_NAMESPACE();
 namespace hairbake::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-using F = hn::CappedTag<float, 16>;
-using I = hn::RebindToSigned<F>;
 
-/// Pieces that reach into a vertex's window, packed for the integral.
-struct Reaching {
-    static constexpr std::size_t capacity = 1024;  ///< integrated and emptied when full
-    alignas(64) float foot[capacity + 16];  ///< s0: piece centre along the piece's axis, from the vertex's foot point
-    alignas(64) float distance2[capacity + 16];  ///< D^2: squared distance of the axis from the vertex
-    alignas(64) float half_length[capacity + 16];
-    alignas(64) float weight[capacity + 16];      ///< opacity * width / h
-    alignas(64) float slope_foot[capacity + 16];  ///< slope . (foot point - vertex)
-    alignas(64) float slope_axis[capacity + 16];  ///< slope . axis
-    std::size_t count = 0;
-};
-
-/// Integral of q(d) sin(angle) T(l) / A / d^2 over the packed pieces (without weight of 1 / 4 pi). Along a straight
-/// piece at axis distance D with s from the foot point and d^2 = D^2 + s^2, sin(angle) = D / d, so the integrand is
-/// D / d^3 - 2 D / (r^2 d) + D d / r^4, with the primitive
-/// s / (D d) - (2 / r^2) D asinh(s / D) + (D / 2 r^4)(s d + D^2 asinh(s / D)).
-float integrate(const Reaching& pieces, float average) {
-    const F d;
-    constexpr float r2 = NearFieldWindow::radius * NearFieldWindow::radius;
-    const auto zero = hn::Zero(d), half = hn::Set(d, 0.5f), inverse_average = hn::Set(d, 1 / average);
-    auto sum = zero;
-    for (std::size_t i = 0; i < pieces.count; i += hn::Lanes(d)) {
-        const auto used = hn::FirstN(d, pieces.count - i);
-        const auto distance2 = hn::Load(d, pieces.distance2 + i), foot = hn::Load(d, pieces.foot + i);
-        const auto half_length = hn::Load(d, pieces.half_length + i);
-        const auto limit = hn::Sqrt(hn::Max(zero, hn::Sub(hn::Set(d, r2), distance2)));
-        const auto low = hn::Max(hn::Sub(foot, half_length), hn::Neg(limit));
-        const auto high = hn::Min(hn::Add(foot, half_length), limit);
-        const auto distance = hn::Sqrt(distance2);
-        const auto d_low = hn::Sqrt(hn::MulAdd(low, low, distance2)),
-                   d_high = hn::Sqrt(hn::MulAdd(high, high, distance2));
-        const auto log_ratio = hn::Log(d, hn::Div(hn::Max(hn::Add(high, d_high), hn::Set(d, 1e-20f)),
-                                                  hn::Max(hn::Add(low, d_low), hn::Set(d, 1e-20f))));
-        const auto peak = hn::Div(hn::Sub(hn::Div(high, d_high), hn::Div(low, d_low)), distance);
-        const auto taper = hn::Mul(log_ratio, hn::Set(d, -2 / r2));
-        const auto rise = hn::Mul(hn::MulAdd(distance2, log_ratio, hn::Sub(hn::Mul(high, d_high), hn::Mul(low, d_low))),
-                                  hn::Set(d, 0.5f / (r2 * r2)));
-        const auto integral = hn::Max(zero, hn::MulAdd(distance, hn::Add(taper, rise), peak));
-        // The integrand peaks at the foot point: the direction is taken half-way from the middle to the nearest point.
-        const auto nearest = hn::Min(hn::Max(low, zero), high), middle = hn::Mul(half, hn::Add(low, high));
-        const auto along = hn::Mul(half, hn::Add(nearest, middle));
-        const auto toward = hn::Sqrt(hn::MulAdd(along, along, distance2));
-        const auto slope =
-            hn::Div(hn::MulAdd(along, hn::Load(d, pieces.slope_axis + i), hn::Load(d, pieces.slope_foot + i)), toward);
-        const auto visible = hn::Max(zero, hn::MulAdd(slope, inverse_average, hn::Set(d, 1.0f)));
-        const auto term = hn::Mul(hn::Mul(hn::Load(d, pieces.weight + i), integral), visible);
-        sum = hn::Add(sum, hn::IfThenElseZero(hn::And(used, hn::Gt(high, low)), term));
-    }
-    return hn::GetLane(hn::SumOfLanes(d, sum));
-}
-
-/// Packs those of the pieces [begin, end) that come within the window of the vertex at x. Returns the integral of what
-/// had to make room.
-float select(const Neighborhood& near, std::size_t begin, std::size_t end, const Vec3f& x, const AdjacentSegments& own,
-             const AngularMean& mean, Reaching& out) {
-    const Vec3f& slope = mean.slope;
-    float integral = 0;
-    const F d;
-    const hn::RebindToSigned<F> di;
-    constexpr float r2 = NearFieldWindow::radius * NearFieldWindow::radius;
-    for (std::size_t i = begin; i < end; i += hn::Lanes(d)) {
-        const auto cx = hn::Sub(hn::LoadU(d, &near.centre_x[i]), hn::Set(d, x.x));
-        const auto cy = hn::Sub(hn::LoadU(d, &near.centre_y[i]), hn::Set(d, x.y));
-        const auto cz = hn::Sub(hn::LoadU(d, &near.centre_z[i]), hn::Set(d, x.z));
-        const auto tx = hn::LoadU(d, &near.axis_x[i]), ty = hn::LoadU(d, &near.axis_y[i]),
-                   tz = hn::LoadU(d, &near.axis_z[i]);
-        const auto foot = hn::MulAdd(cx, tx, hn::MulAdd(cy, ty, hn::Mul(cz, tz)));
-        const auto centre2 = hn::MulAdd(cx, cx, hn::MulAdd(cy, cy, hn::Mul(cz, cz)));
-        const auto weight = hn::LoadU(d, &near.weight[i]), least = hn::LoadU(d, &near.least[i]);
-        const auto distance2 = hn::Max(hn::NegMulAdd(foot, foot, centre2), hn::Mul(least, least));
-        const auto half_length = hn::LoadU(d, &near.half_length[i]);
-        const auto beyond = hn::Max(hn::Zero(d), hn::Sub(hn::Abs(foot), half_length));
-        const auto segment = hn::LoadU(di, &near.segment[i]);
-        const auto is_other = hn::Or(hn::Lt(segment, hn::Set(di, static_cast<std::int32_t>(own.first))),
-                                     hn::Gt(segment, hn::Set(di, static_cast<std::int32_t>(own.last))));
-        auto keep = hn::And(hn::FirstN(d, end - i), hn::Lt(hn::MulAdd(beyond, beyond, distance2), hn::Set(d, r2)));
-        keep = hn::And(hn::RebindMask(d, is_other), keep);
-        if (hn::AllFalse(d, keep)) continue;
-        const auto slope_axis =
-            hn::MulAdd(tx, hn::Set(d, slope.x), hn::MulAdd(ty, hn::Set(d, slope.y), hn::Mul(tz, hn::Set(d, slope.z))));
-        const auto slope_centre =
-            hn::MulAdd(cx, hn::Set(d, slope.x), hn::MulAdd(cy, hn::Set(d, slope.y), hn::Mul(cz, hn::Set(d, slope.z))));
-        if (out.count > Reaching::capacity - hn::Lanes(d)) {
-            integral += integrate(out, mean.average);
-            out.count = 0;
-        }
-        const std::size_t at = out.count;
-        hn::CompressStore(hn::NegMulAdd(foot, slope_axis, slope_centre), keep, d, out.slope_foot + at);
-        hn::CompressStore(slope_axis, keep, d, out.slope_axis + at);
-        hn::CompressStore(foot, keep, d, out.foot + at);
-        hn::CompressStore(distance2, keep, d, out.distance2 + at);
-        hn::CompressStore(half_length, keep, d, out.half_length + at);
-        out.count += hn::CompressStore(weight, keep, d, out.weight + at);
-    }
-    return integral;
-}
-
-/// F_grid of a vertex in local voxel `voxel`: the voxels around it, each seen in the direction of its centre.
-float grid_depth(const Neighborhood& near, int voxel, const NearFieldWindow& window, const AngularMean& mean) {
+/// F_grid of a vertex in local voxel `voxel`, without the factor 1 / 4 pi: the voxels around it, each seen in the
+/// direction of its centre.
+template <std::size_t M>
+MeanValues<M> grid_depth(const Neighborhood& near, int voxel, const NearFieldWindow& window,
+                         const VertexMeans<M>& means) {
     const F d;
     const I di;
-    const Vec3f slope = mean.slope / mean.average;
-    auto sum = hn::Zero(d);
+    std::array<Vec3f, M> slopes;
+    for (std::size_t m = 0; m < M; ++m) slopes[m] = means[m].slope / means[m].average;
+    alignas(64) float sums[M][16] = {};
     for (std::size_t o = 0; o < NearFieldWindow::padded; o += hn::Lanes(d)) {
         const auto x = hn::Load(d, window.direction_x.data() + o), y = hn::Load(d, window.direction_y.data() + o);
         const auto z = hn::Load(d, window.direction_z.data() + o);
@@ -138,15 +59,21 @@ float grid_depth(const Neighborhood& near, int voxel, const NearFieldWindow& win
         along = hn::MulAdd(hn::Mul(y, y), component(1), along);
         along = hn::MulAdd(hn::Mul(z, z), component(2), along);
         const auto depth = hn::Sqrt(hn::Mul(trace, hn::Max(hn::Zero(d), hn::Sub(trace, along))));
-        const auto toward =
-            hn::MulAdd(x, hn::Set(d, slope.x), hn::MulAdd(y, hn::Set(d, slope.y), hn::Mul(z, hn::Set(d, slope.z))));
-        const auto visible = hn::Max(hn::Zero(d), hn::Add(hn::Set(d, 1.0f), toward));
-        sum = hn::MulAdd(hn::Mul(hn::Load(d, window.weight.data() + o), depth), visible, sum);
+        const auto weighted = hn::Mul(hn::Load(d, window.weight.data() + o), depth);
+        for (std::size_t m = 0; m < M; ++m) {
+            const Vec3f& slope = slopes[m];
+            const auto toward =
+                hn::MulAdd(x, hn::Set(d, slope.x), hn::MulAdd(y, hn::Set(d, slope.y), hn::Mul(z, hn::Set(d, slope.z))));
+            const auto visible = hn::Max(hn::Zero(d), hn::Add(hn::Set(d, 1.0f), toward));
+            hn::Store(hn::MulAdd(weighted, visible, hn::Load(d, sums[m])), d, sums[m]);
+        }
     }
-    return hn::GetLane(hn::SumOfLanes(d, sum));
+    MeanValues<M> depths{};
+    for (std::size_t m = 0; m < M; ++m) depths[m] = hn::GetLane(hn::SumOfLanes(d, hn::Load(d, sums[m])));
+    return depths;
 }
 
-/// On how many sides of vertex v its strand goes on: 2, at an end 1, at a lone point none.
+/// The number of sides of vertex v on which its strand continues: 2, at an end 1, at a lone point none.
 float own_sides(const StrandGeometry& strands, std::uint32_t v, const AdjacentSegments& own) {
     const bool before = own.first < v && strands.segments[own.first] == Segment::solid;
     const bool after = strands.segments[own.last] == Segment::solid;
@@ -171,37 +98,69 @@ std::size_t pieces_around(const Neighborhood& near, const Vec3f& x) {
 }
 
 /// F_exact of a vertex at local position x, without the factor 1 / 4 pi.
-float exact_depth(const Neighborhood& near, const Vec3f& x, const AdjacentSegments& own, const AngularMean& mean,
-                  Reaching& pieces) {
-    float depth = 0;
+template <std::size_t M>
+MeanValues<M> exact_depth(const Neighborhood& near, const Vec3f& x, const AdjacentSegments& own,
+                          const VertexMeans<M>& means, Reaching<M>& pieces) {
+    MeanValues<M> depths{};
     pieces.count = 0;
-    for_each_row(near, x,
-                 [&](std::size_t begin, std::size_t end) { depth += select(near, begin, end, x, own, mean, pieces); });
-    return depth + integrate(pieces, mean.average);
+    for_each_row(near, x, [&](std::size_t begin, std::size_t end) {
+        add_to(depths, select(near, begin, end, x, own, means, pieces));
+    });
+    add_to(depths, integrate(pieces, means));
+    return depths;
 }
 
-/// Corrects the vertices of one brick, [first, last) of `sorted`.
-void correct_vertices(const StrandGeometry& strands, const GridFrame& frame, const SortedStrands& sorted,
-                      std::size_t first, std::size_t last, const Neighborhood& near, const NearFieldWindow& window,
-                      std::span<const AngularMean> means, std::span<float> corrected) {
-    Reaching pieces;
-    const auto own_unit = 0.5f * NearFieldWindow::own_strand_beyond / static_cast<float>(frame.voxel_size);
-    for (std::size_t place = first; place < last; ++place) {
-        const std::uint32_t v = sorted.vertices[place];
-        const AngularMean& mean = means[place];
-        const AdjacentSegments own = adjacent_segments(strands, v);
-        float exponent = own_sides(strands, v, own) * own_unit * strands.opacities[v] * strands.widths[v];
-        const float share = NearFieldWindow::share(mean.average);
-        const Vec3f x = sorted.vertex_positions[place] - near.corner;
-        if (share > 0 && pieces_around(near, x) <= NearFieldWindow::most_pieces) {
-            const int voxel = Neighborhood::voxel(static_cast<int>(x.x), static_cast<int>(x.y), static_cast<int>(x.z));
-            const float smeared = grid_depth(near, voxel, window, mean);
-            const float exact = exact_depth(near, x, own, mean, pieces);
-            const float gain = (smeared - exact) / (4 * std::numbers::pi_v<float>);
-            exponent += share * std::min(gain, NearFieldWindow::most_gain);
-        }
-        corrected[v] = std::min(1.0f, mean.average * std::exp(exponent));
+/// The exponents of the correction's factor for the vertex at `place` of volume.sorted, which lies in the brick of
+/// `near`.
+template <std::size_t M>
+HWY_INLINE MeanValues<M> exponents_of(const NearFieldInput& input, std::size_t place, const Neighborhood& near,
+                                      const VertexMeans<M>& means, Reaching<M>& pieces) {
+    const StrandGeometry& strands = input.strands;
+    const std::uint32_t v = input.volume.sorted.vertices[place];
+    const AdjacentSegments own = adjacent_segments(strands, v);
+    MeanValues<M> exponents, shares;
+    exponents.fill(own_sides(strands, v, own) * input.own_unit * strands.opacities[v] * strands.widths[v]);
+    float largest_share = 0;
+    for (std::size_t m = 0; m < M; ++m) {
+        shares[m] = NearFieldWindow::share(means[m].average);
+        largest_share = std::max(largest_share, shares[m]);
     }
+    const Vec3f x = input.volume.sorted.vertex_positions[place] - near.corner;
+    if (!(largest_share > 0) || pieces_around(near, x) > NearFieldWindow::most_pieces) return exponents;
+    const int voxel = Neighborhood::voxel(static_cast<int>(x.x), static_cast<int>(x.y), static_cast<int>(x.z));
+    const MeanValues<M> smeared = grid_depth(near, voxel, input.window, means);
+    const MeanValues<M> exact = exact_depth(near, x, own, means, pieces);
+    for (std::size_t m = 0; m < M; ++m) {
+        if (!(shares[m] > 0)) continue;
+        const float gain = (smeared[m] - exact[m]) / (4 * std::numbers::pi_v<float>);
+        exponents[m] += shares[m] * std::min(gain, NearFieldWindow::most_gain);
+    }
+    return exponents;
+}
+
+/// Corrects up to M means. Where there are fewer the last ones repeat the first and are thrown away.
+template <std::size_t M>
+void correct_means(const NearFieldInput& input, std::size_t first, std::size_t last, const Neighborhood& near,
+                   std::span<std::vector<float>> corrected) {
+    const std::size_t count = input.means.size();
+    Reaching<M> pieces;
+    VertexMeans<M> means;
+    for (std::size_t place = first; place < last; ++place) {
+        for (std::size_t m = 0; m < M; ++m) means[m] = input.means[m < count ? m : 0][place];
+        const MeanValues<M> exponents = exponents_of(input, place, near, means, pieces);
+        const std::uint32_t v = input.volume.sorted.vertices[place];
+        for (std::size_t m = 0; m < count; ++m)
+            corrected[m][v] = std::min(1.0f, means[m].average * std::exp(exponents[m]));
+    }
+}
+
+/// Corrects the vertices [first, last) of volume.sorted, which lie in the brick of `near`. corrected: [means][V].
+void correct_vertices(const NearFieldInput& input, std::size_t first, std::size_t last, const Neighborhood& near,
+                      std::span<std::vector<float>> corrected) {
+    if (input.means.size() == 1)
+        correct_means<1>(input, first, last, near, corrected);
+    else
+        correct_means<kMostMeans>(input, first, last, near, corrected);
 }
 
 }  // namespace hairbake::HWY_NAMESPACE
@@ -213,22 +172,27 @@ namespace {
 HWY_EXPORT(correct_vertices);
 }  // namespace
 
-std::vector<float> correct_near_field(const StrandGeometry& strands, const GridFrame& frame,
-                                      const SortedStrands& sorted, const ExtinctionBricks& bricks,
-                                      std::span<const AngularMean> means, Progress& progress) {
+std::vector<std::vector<float>> correct_near_field(const StrandGeometry& strands, const HairVolume& volume,
+                                                   std::span<const std::vector<AngularMean>> means,
+                                                   const Progress& progress) {
+    HAIRBAKE_ASSERT(means.size() <= kMostMeans);
+    for ([[maybe_unused]] const auto& mean : means) HAIRBAKE_ASSERT(mean.size() == strands.vertex_count());
+    std::vector<std::vector<float>> corrected(means.size(), std::vector<float>(strands.vertex_count()));
+    if (means.empty()) return corrected;
     const NearFieldWindow window;
-    std::vector<float> corrected(means.size());
+    const NearFieldInput input{strands, volume, window, means,
+                               0.5f * NearFieldWindow::own_strand_beyond / static_cast<float>(volume.frame.voxel_size)};
+    const SortedStrands& sorted = volume.sorted;
     parallel_for(sorted.brick_count(), 32, [&](std::size_t begin, std::size_t end) {
         progress.check();
         Neighborhood near;
         for (std::size_t b = begin; b < end; ++b) {
             const std::size_t first = sorted.vertex_begin[b], last = sorted.vertex_begin[b + 1];
             if (first == last) continue;
-            near.collect(frame, sorted, bricks, b, strands.opacities);
+            near.collect(volume, b, strands.opacities);
             for (std::size_t at = first; at < last; at += 1024) {  // a brick may hold the whole model
                 progress.check();
-                HWY_DYNAMIC_DISPATCH(correct_vertices)
-                (strands, frame, sorted, at, std::min(last, at + 1024), near, window, means, corrected);
+                HWY_DYNAMIC_DISPATCH(correct_vertices)(input, at, std::min(last, at + 1024), near, corrected);
             }
         }
     });

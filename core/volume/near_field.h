@@ -1,16 +1,12 @@
-// Near-field correction: what the grid smears out within a voxel's reach of a vertex is put right with the true
-// strands.
+// Near-field correction: replaces the grid's blurred optical depth near a vertex by that of the nearby strands.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "core/base/progress.h"
 #include "core/hair/strand_geometry.h"
-#include "core/volume/extinction_bricks.h"
-#include "core/volume/grid_frame.h"
-#include "core/volume/strand_pieces.h"
+#include "core/volume/hair_volume.h"
 
 namespace hairbake {
 
@@ -20,16 +16,26 @@ struct AngularMean {
     Vec3f slope;    ///< 3 * mean of T l
 };
 
-/// Corrected average transmittance of every vertex ([V], in the model's order, from `means` [V] in the order of
-/// `sorted`): A exp(F_grid - F_exact + own), at most 1.
+/// A vertex has at most this many means (of different lights or extinctions).
+constexpr std::size_t kMostMeans = 4;
+
+/// Corrected averages of every vertex: [means][V], in the model's order. One pass over the strands near the vertices
+/// serves all means; each is corrected on its own.
 ///
-/// F is the mean over directions, weighted with T(l) / A, of the optical depth within the window q(d) = (1 - d^2 /
-/// r^2)^2, r = 0.5 voxels: F_exact of the strand pieces (in closed form along each piece; the vertex's adjacent
-/// segments left out; never nearer than half of the width), F_grid of the voxels. `own` takes out what the
-/// vertex's own strand adds to the grid beyond the window: half of it at a strand's end, nothing at a lone point.
-/// Design, "What a spike measured"; the closed form and the smaller window are ours.
-std::vector<float> correct_near_field(const StrandGeometry& strands, const GridFrame& frame,
-                                      const SortedStrands& sorted, const ExtinctionBricks& bricks,
-                                      std::span<const AngularMean> means, Progress& progress);
+/// volume: made of `strands`
+/// means:  [means][V], as swept, each in the order of volume.sorted.vertices; at most kMostMeans
+///
+/// The corrected average is A exp(F_grid - F_exact + own), at most 1. F is the optical depth within the window
+/// q(d) = (1 - d^2 / r^2)^2, r = 0.5 voxels, as mean over the directions with the weight T(l) / A:
+/// - F_exact of the strand pieces, in closed form along each piece. The vertex's adjacent segments are left out. The
+///   distance is never less than half of the width.
+/// - F_grid of the voxels.
+/// `own` removes the part of the vertex's own strand that the grid holds outside the window: half of it at a strand's
+/// end, nothing at a lone point. See docs/math.md, "The near field".
+///
+/// The same bits for any thread count. Throws Error(cancelled).
+std::vector<std::vector<float>> correct_near_field(const StrandGeometry& strands, const HairVolume& volume,
+                                                   std::span<const std::vector<AngularMean>> means,
+                                                   const Progress& progress);
 
 }  // namespace hairbake

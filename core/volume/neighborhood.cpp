@@ -9,32 +9,32 @@ namespace {
 
 constexpr std::size_t kVectorPadding = 16;
 
-/// Of local voxel coordinate 0..9: which of the three bricks on that axis, and the voxel inside it.
+/// The brick (-1, 0 or 1 from the middle one) that holds local voxel coordinate 0 to 9, and the voxel inside it.
 int brick_step(int local) { return local == 0 ? -1 : local == 9 ? 1 : 0; }
 int inner(int local) { return (local + 7) & 7; }
 
-/// Whether a piece is longer than half a voxel and goes in as two halves.
+/// A piece that is longer than half a voxel is stored as two halves.
 bool is_halved(const StrandPiece& piece) { return dot(piece.step, piece.step) > 0.25f; }
 
 }  // namespace
 
-void Neighborhood::collect(const GridFrame& frame, const SortedStrands& sorted, const ExtinctionBricks& bricks,
-                           std::size_t brick, std::span<const float> opacities) {
-    const std::array<int, 3> place = frame.brick_coordinates(sorted.bricks[brick]);
+void Neighborhood::collect(const HairVolume& volume, std::size_t brick, std::span<const float> opacities) {
+    const std::array<int, 3> place = volume.frame.brick_coordinates(volume.sorted.bricks[brick]);
     corner = Vec3f(float(8 * place[0] - 1), float(8 * place[1] - 1), float(8 * place[2] - 1));
-    find_places(frame, sorted, place);
-    collect_pieces(sorted, opacities);
-    collect_tensors(bricks);
+    find_places(volume, place);
+    collect_pieces(volume.sorted, opacities);
+    collect_tensors(volume.bricks);
 }
 
-void Neighborhood::find_places(const GridFrame& frame, const SortedStrands& sorted, const std::array<int, 3>& brick) {
+void Neighborhood::find_places(const HairVolume& volume, const std::array<int, 3>& brick) {
+    const SortedStrands& sorted = volume.sorted;
     places_.clear();
     for (int i = 0; i < side; ++i)
         for (int j = 0; j < side; ++j) {
             std::array<std::int32_t, 3> slots{};
             for (int k = -1; k <= 1; ++k)
                 slots[static_cast<std::size_t>(k + 1)] =
-                    sorted.slot_at(frame, brick[0] + brick_step(i), brick[1] + brick_step(j), brick[2] + k);
+                    sorted.slot_at(volume.frame, brick[0] + brick_step(i), brick[1] + brick_step(j), brick[2] + k);
             for (int k = 0; k < side; ++k) {
                 const std::int32_t slot = slots[static_cast<std::size_t>(brick_step(k) + 1)];
                 if (slot < 0) continue;
@@ -59,7 +59,7 @@ void Neighborhood::for_each_half(const StrandPiece& piece, const Visit& visit) c
     offer(local + quarter);
 }
 
-/// Sorts by counting: once over the pieces for the cells' sizes, once to store.
+/// Sorts by counting: one pass over the pieces counts the cells, a second one stores.
 void Neighborhood::collect_pieces(const SortedStrands& sorted, std::span<const float> opacities) {
     begin.fill(0);
     for (const Place& place : places_)

@@ -1,4 +1,4 @@
-// A brick with what lies near it, laid out for the near-field correction.
+// A brick and its surroundings, laid out for the near-field correction.
 #pragma once
 
 #include <array>
@@ -8,18 +8,20 @@
 #include <vector>
 
 #include "core/base/vec.h"
-#include "core/volume/extinction_bricks.h"
-#include "core/volume/grid_frame.h"
-#include "core/volume/strand_pieces.h"
+#include "core/volume/hair_volume.h"
 
 namespace hairbake {
 
-/// Local space: voxels, origin at `corner`, one voxel below the brick on every axis: the brick's own voxels are 1 to 8,
-/// the halo is 0 and
-/// 9. Reused from brick to brick; one per thread.
+/// Local space is in voxels with its origin at `corner`, one voxel below the brick on every axis. On each axis the
+/// brick's voxels are 1 to 8 and its halo is 0 and 9.
+///
+///   local coordinate  0    0.5   1            9   9.5   10
+///   voxel             |    0     |   1 .. 8   |    9    |
+///   cell                   |  0  |  1 .. 16   | 17 |
+///
+/// Pieces lie in cells of half a voxel. Reused from brick to brick; one per thread.
 struct Neighborhood {
     static constexpr int side = 10;  ///< voxels
-    /// Pieces lie in cells of half a voxel: cell 0 is the upper half of the halo's voxels below, 1 to 16 the brick.
     static constexpr int cell_side = 18;
     static constexpr int cells = cell_side * cell_side * cell_side;
 
@@ -32,7 +34,7 @@ struct Neighborhood {
     std::vector<float> half_length;                   ///< voxels
     std::vector<float> weight;                        ///< opacity * width / h
     std::vector<float> least;                         ///< half of width / h
-    std::vector<std::int32_t> segment;
+    std::vector<std::int32_t> segment;                ///< of the model, which owns the piece
 
     /// Extinction tensors of ExtinctionBricks: [component][voxel], components as there, then the trace.
     std::array<std::vector<float>, ExtinctionBricks::components + 1> tensor;
@@ -42,16 +44,18 @@ struct Neighborhood {
     /// Cell coordinate of a local coordinate.
     static int cell_of(float local) { return static_cast<int>(2 * local) - 1; }
 
-    /// `opacities` [V]: of the model's points.
-    void collect(const GridFrame& frame, const SortedStrands& sorted, const ExtinctionBricks& bricks, std::size_t brick,
-                 std::span<const float> opacities);
+    /// Fills the neighborhood of a brick.
+    ///
+    /// brick:     brick number of volume.sorted
+    /// opacities: [V], of the model's points
+    void collect(const HairVolume& volume, std::size_t brick, std::span<const float> opacities);
 
 private:
     struct Place {
         std::uint32_t slot, voxel, local;  ///< brick number, voxel in it, voxel in this neighborhood
     };
 
-    void find_places(const GridFrame& frame, const SortedStrands& sorted, const std::array<int, 3>& brick);
+    void find_places(const HairVolume& volume, const std::array<int, 3>& brick);
     void collect_pieces(const SortedStrands& sorted, std::span<const float> opacities);
     /// Calls visit(local position, cell) for the one or two halves of a piece that lie in this neighborhood.
     template <class Visit>

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/assert.h"
 #include "core/mesh/mesh_topology.h"
 
 namespace hairbake {
@@ -15,8 +16,8 @@ constexpr double kCellsPerSize = 512, kMostCells = 2048;
 
 }  // namespace
 
-/// The cells of one direction: cell (i, j) has its centre at p . across_u = i + 0.5 - half, p . across_v = j + 0.5 -
-/// half.
+/// The cells of one direction. The centre of cell (i, j) has p . across_u = i + 0.5 - half and
+/// p . across_v = j + 0.5 - half.
 struct OccluderShadow::Raster {
     Vec3d l, across_u, across_v;
     double half;
@@ -35,7 +36,8 @@ OccluderShadow::OccluderShadow(const TriangleMesh& mesh, const ShadowScale& scal
                                const Vec3f& bounds_max) {
     const Vec3d diagonal = Vec3d(bounds_max) - Vec3d(bounds_min);
     middle_ = Vec3d(bounds_min) + diagonal * 0.5;
-    const double reach = 0.5 * length(diagonal) + scale.reach() + scale.lift();  // grounded points may lie outside
+    const double reach =
+        0.5 * length(diagonal) + scale.reach() + scale.lift();  // grounded points may lie outside the box
     cell_ = std::max(scale.size / kCellsPerSize, 2 * reach / kMostCells);
     half_side_ = reach / cell_;
     tolerance_ = static_cast<float>(0.5 * scale.lift() / cell_);
@@ -53,7 +55,7 @@ OccluderShadow::OccluderShadow(const TriangleMesh& mesh, const ShadowScale& scal
     }
 }
 
-/// Keeps `triangle` in the cells whose centre it covers, its sides included, where it is the one nearest to the light.
+/// Stores `triangle` in the cells whose centre it covers (edges included) and where it is nearest to the light so far.
 void OccluderShadow::draw_triangle(const Raster& raster, std::uint32_t triangle, Scratch& scratch) const {
     std::array<double, 3> u, v, height;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -71,7 +73,7 @@ void OccluderShadow::draw_triangle(const Raster& raster, std::uint32_t triangle,
     const auto [lowest, highest] = std::minmax({height[0], height[1], height[2]});
     for (int j = static_cast<int>(std::ceil(std::max(0.0, v_low))); j <= std::min(last, v_high); ++j) {
         double begin = std::numeric_limits<double>::infinity(), end = -begin;
-        for (std::size_t k = 0; k < 3; ++k) {  // where the row cuts the sides
+        for (std::size_t k = 0; k < 3; ++k) {  // where the row crosses the edges
             const std::size_t n = (k + 1) % 3;
             if (std::min(v[k], v[n]) > j || std::max(v[k], v[n]) < j) continue;
             const double part = v[n] == v[k] ? 0 : (j - v[k]) / (v[n] - v[k]);
@@ -107,8 +109,9 @@ void OccluderShadow::draw(const Raster& raster, const Progress& progress, Scratc
     }
 }
 
-void OccluderShadow::look(const Points& points, std::span<const Vec3d> directions, const Progress& progress,
-                          Scratch& scratch, std::vector<std::uint8_t>& seen) const {
+void OccluderShadow::visible(const Points& points, std::span<const Vec3d> directions, const Progress& progress,
+                             Scratch& scratch, std::vector<std::uint8_t>& seen) const {
+    HAIRBAKE_ASSERT(directions.size() <= 8);
     seen.assign(points.at.size(), 0);
     for (std::size_t k = 0; k < directions.size(); ++k) {
         const Raster raster(directions[k], half_side_);

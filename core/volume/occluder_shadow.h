@@ -13,28 +13,32 @@
 namespace hairbake {
 
 /// A point sees the light in direction l unless a triangle is in the way. For each direction the mesh is drawn along l
-/// into a raster of cells of 1/512 of the scale's size (more where the points take more than 2,048 of them), each
-/// keeping the triangle nearest to the light at its centre; a point is blocked when it lies more than half of the lift
-/// behind the plane of its cell's triangle. So the shadow's depth is exact and its outline right to half a cell,
-/// without bias; both sides of a triangle block; nothing depends on the hair's voxels, and the mesh may be of any size.
+/// into a raster. A cell is 1/512 of the scale's size, or larger where the points would take more than 2,048 cells. It
+/// keeps the triangle nearest to the light at its centre. A point is blocked when it lies more than half of the lift
+/// behind the plane of its cell's triangle. So the shadow's depth is exact, and its outline is right to half a cell
+/// without bias. Both sides of a triangle block. The result does not depend on the hair's voxels, and the mesh may have
+/// any size. See docs/math.md, "Occluders".
 ///
-/// The solid voxels of the design (OpenVDB's meshToVolume) were left for this: a root in the voxel beside a solid one
-/// would see a horizon that is wrong by up to a voxel, 11 degrees and a tenth of the sky on a head of 9 cm at 256
-/// voxels; and a mesh larger than the hair would need a larger grid.
+/// Solid voxels (OpenVDB's meshToVolume) are less exact: a root in the voxel beside a solid one sees a horizon that is
+/// wrong by up to a voxel, which is 11 degrees and a tenth of the sky on a head of 9 cm at 256 voxels. And a mesh
+/// larger than the hair would need a larger grid.
 ///
-/// Immutable after construction; may be asked from several threads, each with a scratch of its own.
+/// Immutable after construction; several threads may use it, each with a scratch of its own.
 class OccluderShadow {
 public:
-    /// `bounds_min` and `bounds_max` hold every point that will be asked for. Copies what it needs of the mesh.
+    /// Copies what it needs of the mesh. Every point that visible() gets must lie in the box from `bounds_min` to
+    /// `bounds_max`.
     OccluderShadow(const TriangleMesh& mesh, const ShadowScale& scale, const Vec3f& bounds_min,
                    const Vec3f& bounds_max);
 
-    /// Points in the order in which visibility is wanted: make one for each order with points().
+    /// Points in the order of visible(): make one for each order with points().
     struct Points {
         std::vector<Vec3f> at;                ///< in cells, from the middle of the bounds
         std::vector<GroundedPoint> grounded;  ///< with a horizon; their index is into `at`
     };
-    /// `at(i)` for i < count: model space. `grounded_of(i)`: the grounded point that i stands for, or null.
+    /// count:       number of points
+    /// at:          at(i) is the position of point i, model space
+    /// grounded_of: grounded_of(i) points to the GroundedPoint of point i, or is null
     template <class At, class GroundedOf>
     Points points(std::size_t count, const At& at, const GroundedOf& grounded_of) const {
         Points result;
@@ -47,15 +51,20 @@ public:
         return result;
     }
 
-    /// What one thread needs; reused from call to call.
+    /// Buffers of one thread, reused from call to call.
     struct Scratch {
         std::vector<float> height;            ///< along the direction, of each cell's triangle
         std::vector<std::uint32_t> triangle;  ///< of each cell, or none
         std::vector<Vec3d> projected;         ///< positions of the mesh: cell along u and v, height
     };
-    /// Bit k of seen[i]: point i sees the light in directions[k] (unit, at most 8).
-    void look(const Points& points, std::span<const Vec3d> directions, const Progress& progress, Scratch& scratch,
-              std::vector<std::uint8_t>& seen) const;
+    /// Finds which points see the light.
+    ///
+    /// directions: unit, at most 8
+    /// seen:       [points], bit k of seen[i]: point i sees the light in directions[k]
+    ///
+    /// Throws Error(cancelled).
+    void visible(const Points& points, std::span<const Vec3d> directions, const Progress& progress, Scratch& scratch,
+                 std::vector<std::uint8_t>& seen) const;
 
 private:
     struct Raster;
@@ -73,7 +82,7 @@ private:
     double cell_ = 1;       ///< model units
     float tolerance_ = 0;   ///< cells
     double half_side_ = 1;  ///< of the raster, cells
-    double facing_ = 0;     ///< closed: +-1, only triangles whose outside faces the light can be nearest to it; else 0
+    double facing_ = 0;     ///< +-1 for a closed mesh: only triangles whose outside faces the light are drawn; else 0
     std::vector<Vec3d> positions_;                         ///< in cells
     std::vector<std::array<std::uint32_t, 3>> triangles_;  ///< those with an area
     std::vector<Plane> planes_;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr float no_hair = std::numeric_limits<float>::infinity();
 
-/// Coverage of segment i as a whole, in texel areas: width times length across the map times opacity.
+/// Coverage of the whole segment i, in texel areas: width times length across the map times opacity.
 float coverage_of(const StrandGeometry& strands, const OpacityView& view, std::span<const LightPoint> points,
                   std::size_t i) {
     if (strands.segments[i] != Segment::solid) return 0;
@@ -64,11 +64,11 @@ void OpacityMap::draw(const OpacityView& view, const StrandGeometry& strands, st
     });
 }
 
-/// The four texels about a point, what the blend gives each, and where on its curve the point lies.
+/// The four texels about a point, their weights in the blend, and the place of the point on each texel's curve.
 struct OpacityMap::Footprint {
     struct Texel {
         float weight = 0;   ///< 0 where the texel does not count
-        float before = -1;  ///< where the point's layer begins and ends, absolute depth
+        float before = -1;  ///< absolute depth where the point's layer begins, and where it ends
         float end = 0;
         float inside = 0;       ///< share of the layer that lies before the point
         std::size_t layer = 0;  ///< the point's
@@ -77,7 +77,7 @@ struct OpacityMap::Footprint {
     int x = 0, y = 0;  ///< of the first texel
     std::array<Texel, 4> texels;
 
-    /// Which of the four the texel is, or -1.
+    /// Index of the texel among the four, or -1.
     int index(int tx, int ty) const {
         const int dx = tx - x, dy = ty - y;
         return (dx & ~1) == 0 && (dy & ~1) == 0 ? 2 * dy + dx : -1;
@@ -96,7 +96,7 @@ OpacityMap::Footprint OpacityMap::footprint(const LightPoint& p) const {
         const int x = footprint.x + (i & 1), y = footprint.y + (i >> 1);
         if (x < 0 || y < 0 || x >= view_->width || y >= view_->height) continue;
         const float first = texel(x, y)[0], behind = p.z - first;
-        if (!(behind > 0)) continue;  // before the first hair, or no hair at all
+        if (!(behind > 0)) continue;  // in front of the first hair, or no hair
         auto& t = footprint.texels[static_cast<std::size_t>(i)];
         t.weight = (i & 1 ? fx : 1 - fx) * (i >> 1 ? fy : 1 - fy);
         const auto found = std::upper_bound(layer_end.begin(), layer_end.end() - 1, behind);
@@ -113,7 +113,7 @@ OpacityMap::Footprint OpacityMap::footprint(const LightPoint& p) const {
 float OpacityMap::own_depth(const StrandGeometry& strands, std::span<const LightPoint> points, std::uint32_t v,
                             const Footprint& footprint) const {
     float depth = 0;
-    // From `from` to its neighbour; tells whether the neighbour lies in the four texels as well.
+    // Adds the piece from vertex `from` to its neighbour `to`; returns whether `to` lies in the four texels as well.
     const auto stays = [&](std::uint32_t from, std::uint32_t to) {
         const float coverage = coverage_of(strands, *view_, points, std::min(from, to));
         const LightPoint &a = points[from], &b = points[to];

@@ -1,5 +1,4 @@
-// One deep opacity map (Yuksel and Keyser 2008; spec, section 3b): in every texel the depth z0 of the first hair and,
-// for layers that begin there, the optical depth of all hair before each layer's end.
+// One deep opacity map (Yuksel and Keyser 2008; docs/math.md, "Opacity maps").
 #pragma once
 
 #include <cstdint>
@@ -12,34 +11,41 @@
 
 namespace hairbake {
 
-/// Strands are lines cut at the texels' edges. A piece of length d across the map adds the coverage
-/// width * d * opacity / texel area, as optical depth, to every layer whose end lies behind it; one that crosses a
-/// layer's end adds to that layer the share of it that lies before. So the last layer's sum over all texels is the
-/// projected area times opacity whatever the resolution.
+/// Every texel holds the depth z0 of its first hair. Its layers begin there; each holds the optical depth of all hair
+/// before the layer's end.
 ///
-/// Within a texel the optical depth runs from 0 at z0 in straight lines through the ends of the layers and is constant
-/// behind the last one; the four texels about a point are blended bilinearly, each with its own z0. A vertex does not
-/// see the run of its own strand through these four texels: its coverage is taken out again.
+/// Drawing: strands are lines cut at the texels' edges. A piece of length d across the map adds the coverage
+/// width * d * opacity / texel area, as optical depth, to every layer that ends behind it. A piece that crosses a
+/// layer's end adds to that layer only its share before the end. So the sum of the last layer over all texels is the
+/// projected area times opacity at any resolution.
 ///
-/// Reusable: draw() begins anew. Not thread-safe while drawing; look-ups may run side by side.
+/// Look-up: within a texel the optical depth is 0 at z0, linear between the ends of the layers, and constant behind the
+/// last one. The four texels about a point are blended bilinearly, each with its own z0. The coverage of a vertex's own
+/// strand in these four texels is subtracted.
+///
+/// Reusable: draw() starts again. Not thread-safe while drawing; look-ups may run in several threads.
 class OpacityMap {
 public:
-    /// Draws all solid segments of `strands`, whose vertices lie at `points` ([V], OpacityView::project). `view` must
-    /// outlive the look-ups. Throws Error(cancelled).
+    /// Draws all solid segments of `strands`.
+    ///
+    /// view:   must outlive the look-ups
+    /// points: [V], the vertices as view.project() gives them
+    ///
+    /// Throws Error(cancelled).
     void draw(const OpacityView& view, const StrandGeometry& strands, std::span<const LightPoint> points,
               const Progress& progress);
 
     /// Optical depth between vertex v of the strands drawn last and the light. Never negative.
     float optical_depth(const StrandGeometry& strands, std::span<const LightPoint> points, std::uint32_t v) const;
 
-    /// The same for a point that belongs to no strand and may lie anywhere: beside the map there is no hair.
+    /// The same for a point that belongs to no strand and may lie anywhere. Beside the map there is no hair.
     float optical_depth(const LightPoint& point) const;
 
     /// Coverage of a texel summed over its whole depth.
     float coverage(int x, int y) const { return texel(x, y)[view_->layer_end.size()]; }
     const OpacityView& view() const { return *view_; }
 
-    /// Bytes that a map of `settings` takes at most.
+    /// The largest size of a map of `settings`, in bytes.
     static std::uint64_t bytes(const OpacityMapSettings& settings);
 
 private:

@@ -17,8 +17,8 @@ namespace hairbake {
 namespace {
 
 constexpr std::size_t kMostMaps = 16;                         ///< at the same time, whatever the machine
-constexpr std::uint64_t kMapMemory = std::uint64_t{1} << 30;  ///< bytes for all of them, but one always runs
-constexpr std::size_t kGrain = 8192;                          ///< points a piece of work
+constexpr std::uint64_t kMapMemory = std::uint64_t{1} << 30;  ///< bytes for all maps; one map is always allowed
+constexpr std::size_t kGrain = 8192;                          ///< points in a piece of work
 
 void check(const TransmittanceScene& scene, const TransmittanceSettings& settings) {
     const auto check_range = [](const char* field, double value, double low, double high) {
@@ -38,7 +38,8 @@ void check(const TransmittanceScene& scene, const TransmittanceSettings& setting
                     "occluder");
 }
 
-/// The side below which a texel would be narrower than hair. Throws Error(bad_input) for what floats cannot hold.
+/// The smallest side of a texel: a smaller one would be narrower than hair.
+/// Throws Error(bad_input) for widths that floats cannot hold.
 double least_texel(const StrandGeometry& strands) {
     const double least = 2 * typical_largest_width(strands.widths);
     const double largest = *std::max_element(strands.widths.begin(), strands.widths.end());
@@ -51,7 +52,7 @@ double least_texel(const StrandGeometry& strands) {
     return least;
 }
 
-/// All of one direction. Reused from direction to direction.
+/// Map and results of one direction. Reused from direction to direction.
 struct OneDirection {
     OpacityView view;
     std::vector<LightPoint> points;  ///< [V]
@@ -84,7 +85,7 @@ void evaluate(const TransmittanceScene& scene, const TransmittanceSettings& sett
     });
 }
 
-/// What the directions add up to, in their order.
+/// Sums over the directions, added in their order.
 class Sums {
 public:
     Sums(const TransmittanceScene& scene, const TransmittanceSettings& settings, std::span<const Vec3d> directions)

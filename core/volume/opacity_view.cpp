@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/assert.h"
+
 namespace hairbake {
 namespace {
 
@@ -32,6 +34,7 @@ Extent extent_of(std::span<const Vec3f> points, const OpacityView& view) {
 
 OpacityView make_opacity_view(std::span<const Vec3f> points, const Vec3d& l, const OpacityMapSettings& settings,
                               double least_texel) {
+    HAIRBAKE_ASSERT(!points.empty() && least_texel > 0);
     OpacityView view;
     view.l = l;
     // Any axis that is not nearly parallel to l.
@@ -39,8 +42,8 @@ OpacityView make_opacity_view(std::span<const Vec3f> points, const Vec3d& l, con
     view.v = cross(l, view.u);
     const Extent extent = extent_of(points, view);
     const Vec3d side = extent.high - extent.low;
-    // One texel on each side is a margin, so that the four texels around a point always exist. A trifle more than the
-    // quotient, so that rounding cannot add a texel.
+    // A margin of one texel on each side makes sure that the four texels around a point exist. The factor above 1 keeps
+    // rounding from adding a texel.
     view.texel_size = std::max(std::max(side.x, side.y) * (1 + 1e-9) / (settings.resolution - 2), least_texel);
     view.scale = 1 / view.texel_size;
     view.origin_u = extent.low.x - view.texel_size;

@@ -1,4 +1,4 @@
-// The occluder's shadow on a set of points, in the order in which a sweep reads them.
+// The occluder's shadow on the points of a model, in the order of a sweep's slots.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,18 @@
 
 namespace hairbake {
 
-/// Refers to `positions`, which must outlive it. Immutable after construction; may be asked from several threads.
+/// Immutable after construction: thread-safe.
 class PointShadow {
 public:
+    /// positions: of the model, model space; must outlive this object
+    /// scale:     shadow_scale() of the hair and the occluder
+    ///
     /// Throws Error(cancelled).
     PointShadow(std::span<const Vec3f> positions, const TriangleMesh& occluder, const ShadowScale& scale,
                 Progress& progress);
 
     const OccluderShadow& occluder() const { return occluder_; }
-    /// The slots of a sweep: slot i stands for position point_of_slot[i], or for none where that is out of range.
+    /// Slot i stands for position point_of_slot[i], or for none where that is out of range.
     OccluderShadow::Points points(std::span<const std::uint32_t> point_of_slot) const;
 
 private:

@@ -4,13 +4,14 @@
 #include <string>
 #include <utility>
 
+#include "core/base/assert.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 
 namespace hairbake {
 namespace {
 
-/// The model is walked in this many chunks whatever the thread count; each counts and then writes for itself.
+/// The model is walked in this many chunks for any thread count; each chunk counts and then writes by itself.
 constexpr std::size_t kChunks = 16;
 
 using Counts = std::vector<std::vector<std::uint32_t>>;  ///< [chunk][brick]
@@ -53,7 +54,7 @@ void for_each_chunk(const StrandGeometry& strands, const Body& body) {
     parallel_for(count, grain, [&](std::size_t begin, std::size_t end) { body(begin / grain, begin, end); });
 }
 
-/// Counts what lies in each brick of the frame, for each chunk.
+/// Counts the pieces and vertices of each chunk in each brick of the frame.
 void count_items(const StrandGeometry& strands, const GridFrame& frame, Counts& pieces, Counts& vertices) {
     pieces.resize(kChunks);
     vertices.resize(kChunks);
@@ -83,8 +84,8 @@ void find_occupied_bricks(const Counts& pieces, const Counts& vertices, SortedSt
     }
 }
 
-/// Turns the counts into the place where each chunk writes its first item of each brick; returns the beginnings of the
-/// occupied bricks. Throws Error(out_of_resources).
+/// Turns each count into the place where the chunk writes its first item of the brick; returns where each occupied
+/// brick begins. Throws Error(out_of_resources).
 std::vector<std::uint32_t> counts_to_places(Counts& counts, const std::vector<std::uint32_t>& bricks) {
     std::vector<std::uint32_t> begin;
     std::uint64_t sum = 0;
@@ -142,6 +143,7 @@ void sort_within_bricks(SortedStrands& sorted) {
 }  // namespace
 
 SortedStrands sort_strands(const StrandGeometry& strands, const GridFrame& frame, Progress& progress) {
+    HAIRBAKE_ASSERT(strands.vertex_count() > 0);
     SortedStrands sorted;
     Counts pieces, vertices;
     count_items(strands, frame, pieces, vertices);

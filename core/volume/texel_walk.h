@@ -5,17 +5,20 @@
 #include <cstdlib>
 #include <limits>
 
+#include "core/base/assert.h"
 #include "core/volume/opacity_view.h"
 
 namespace hairbake {
 
-/// Calls visit(x, y, t0, t1) for every texel on the way from a to b: the part of the line from t0 to t1 (0 at a, 1 at
-/// b) lies in it. The parts follow each other without gaps. Stops when visit returns false; tells whether it came to b.
+/// Calls visit(x, y, t0, t1) for every texel on the way from a to b. The part of the line from t0 to t1 (0 at a, 1 at
+/// b) lies in the texel. The parts follow each other without gaps. Stops when visit returns false. Returns whether it
+/// reached b. a and b must have x and y of at least 0.
 /// (Amanatides and Woo 1987, with counted steps, so that rounding can neither miss b's texel nor run past it.)
 template <class Visit>
 bool walk_texels(const LightPoint& a, const LightPoint& b, const Visit& visit) {
+    HAIRBAKE_ASSERT(a.x >= 0 && a.y >= 0 && b.x >= 0 && b.y >= 0);
     constexpr float never = std::numeric_limits<float>::infinity();
-    int x = static_cast<int>(a.x), y = static_cast<int>(a.y);  // no point lies below 0
+    int x = static_cast<int>(a.x), y = static_cast<int>(a.y);
     int left_x = static_cast<int>(b.x) - x, left_y = static_cast<int>(b.y) - y;
     const int step_x = left_x < 0 ? -1 : 1, step_y = left_y < 0 ? -1 : 1;
     left_x = std::abs(left_x);

@@ -5,32 +5,32 @@
 #include <span>
 #include <string>
 
-#include "core/visibility/direction_moments.h"
+#include "core/base/error.h"
 #include "core/visibility/direction_set.h"
 #include "core/visibility/hemisphere_means.h"
 #include "core/volume/density_grid.h"
 #include "core/volume/direction_sweep.h"
-#include "core/volume/directional_answers.h"
-#include "core/volume/extinction_bricks.h"
-#include "core/volume/grid_frame.h"
-#include "core/volume/near_field.h"
+#include "core/volume/functionals.h"
+#include "core/volume/hair_volume.h"
 #include "core/volume/point_shadow.h"
-#include "core/volume/strand_pieces.h"
 
 namespace hairbake {
 namespace {
 
-std::vector<float> answer_receiver(const ItemSums& sums, std::vector<std::string>& warnings) {
-    std::size_t without_direction = 0;
-    auto answers = receiver_answers(sums, &without_direction);
-    if (without_direction > 0)
-        warnings.push_back(std::to_string(without_direction) +
-                           " of the receiver's points have no direction above their plane and count as not shadowed: "
-                           "ask for more directions (transmittance.directions)");
-    return answers;
+/// The occluder's shadow on the receiver; none without an occluder or where the receiver is the occluder.
+std::optional<PointShadow> shadow_on_receiver(const TransmittanceScene& scene, Progress& progress) {
+    if (!scene.receiver || !scene.occluder || scene.receiver_is_occluder) return std::nullopt;
+    return std::optional<PointShadow>(std::in_place, scene.receiver->positions, *scene.occluder,
+                                      shadow_scale(scene.strands.positions, *scene.occluder), progress);
 }
 
-/// Only the occluder, if any, is in the way.
+std::optional<PointShadow> shadow_on_vertices(const TransmittanceScene& scene, Progress& progress) {
+    if (!scene.occluder) return std::nullopt;
+    return std::optional<PointShadow>(std::in_place, scene.strands.positions, *scene.occluder,
+                                      shadow_scale(scene.strands.positions, *scene.occluder), progress);
+}
+
+/// The receiver's means where there is no hair: only the occluder, if any, is in the way.
 std::vector<float> receiver_without_hair(const TriangleMesh& receiver, const std::optional<PointShadow>& shadow,
                                          std::span<const Vec3d> directions, const Progress& progress) {
     const std::size_t count = receiver.positions.size();
@@ -42,7 +42,7 @@ std::vector<float> receiver_without_hair(const TriangleMesh& receiver, const std
     std::vector<std::uint8_t> seen;
     std::vector<HemisphereSums> sums(count);
     for (std::size_t k = 0; k < directions.size(); ++k) {
-        shadow->occluder().look(points, directions.subspan(k, 1), progress, raster, seen);
+        shadow->occluder().visible(points, directions.subspan(k, 1), progress, raster, seen);
         for (std::size_t i = 0; i < count; ++i) sums[i].add(seen[i], dot(Vec3d(receiver.normals[i]), directions[k]));
     }
     std::vector<float> answers;
@@ -51,58 +51,80 @@ std::vector<float> receiver_without_hair(const TriangleMesh& receiver, const std
     return answers;
 }
 
+/// The receiver's positions in grid space.
+std::vector<Vec3f> receiver_positions(const TransmittanceScene& scene, const GridFrame& frame) {
+    std::vector<Vec3f> positions;
+    if (!scene.receiver) return positions;
+    const std::size_t count = scene.receiver->positions.size();
+    if (count >> 31)
+        throw Error(ErrorKind::out_of_resources,
+                    "the receiver has " + std::to_string(count) + " positions; fewer than 2147483648 are allowed",
+                    "receiver");
+    positions.reserve(count);
+    for (const Vec3f& p : scene.receiver->positions) positions.push_back(frame.to_grid(p));
+    return positions;
+}
+
+std::vector<std::unique_ptr<Functional>> make_functionals(const FunctionalInput& input) {
+    std::vector<std::unique_ptr<Functional>> functionals;
+    for (const MakeFunctional make : kFunctionals)
+        if (auto functional = make(input)) functionals.push_back(std::move(functional));
+    return functionals;
+}
+
+/// Sweeps for all functionals, corrects their near field in one pass, and lets them answer.
+void evaluate(const FunctionalInput& input, const HairVolume& volume, Progress& progress, Transmittance& result) {
+    const auto functionals = make_functionals(input);
+    std::vector<const SweepReader*> readers;
+    for (const auto& functional : functionals) readers.push_back(&functional->reader());
+    ProgressPart sweeping = progress.part(0, 0.6);
+    const auto sums = sweep_directions(volume, input.directions, readers, sweeping);
+
+    std::vector<std::vector<AngularMean>> means;
+    std::vector<std::size_t> begin{0};  // of each functional's means
+    for (std::size_t i = 0; i < functionals.size(); ++i) {
+        for (auto& mean : functionals[i]->near_field_means(sums[i])) means.push_back(std::move(mean));
+        begin.push_back(means.size());
+    }
+    auto corrected = correct_near_field(input.scene.strands, volume, means, progress);
+    for (std::size_t i = 0; i < functionals.size(); ++i)
+        functionals[i]->answer(sums[i], std::span(corrected).subspan(begin[i], begin[i + 1] - begin[i]), result);
+}
+
 }  // namespace
 
 Transmittance bake_transmittance_volume(const TransmittanceScene& scene, const TransmittanceSettings& settings,
                                         Progress& progress) {
-    const StrandGeometry& strands = scene.strands;
     const auto directions = make_directions(settings.direction_set, settings.directions, settings.seed);
     Transmittance result;
     result.directions = settings.directions;
-    const bool receiver_is_shadowed = scene.receiver && scene.occluder && !scene.receiver_is_occluder;
-    std::optional<PointShadow> vertex_shadow, receiver_shadow;
-    if (receiver_is_shadowed)
-        receiver_shadow.emplace(scene.receiver->positions, *scene.occluder,
-                                shadow_scale(strands.positions, *scene.occluder), progress);
-    if (strands.vertex_count() == 0) {
+    const std::optional<PointShadow> receiver_shadow = shadow_on_receiver(scene, progress);
+    if (scene.strands.vertex_count() == 0) {
         if (scene.receiver)
             result.receiver = receiver_without_hair(*scene.receiver, receiver_shadow, directions, progress);
         return result;
     }
-    bool bounded_by_width = false;
-    const GridFrame frame = make_grid_frame(strands, settings, &bounded_by_width);
-    result.voxel_size = frame.voxel_size;
-    if (bounded_by_width)
+    ProgressPart building = progress.part(0, 0.3), evaluating = progress.part(0.3, 1);
+    const HairVolume volume = make_hair_volume(scene.strands, settings, building);
+    result.voxel_size = volume.frame.voxel_size;
+    result.occupied_voxels = volume.bricks.occupied_voxels;
+    if (volume.frame.bounded_by_width)
         result.warnings.push_back(
             "the strands are too wide for the voxels asked for: a voxel is twice the 95th "
             "percentile of the widths, " +
-            std::to_string(frame.voxel_size) + " model units");
+            std::to_string(volume.frame.voxel_size) + " model units");
 
-    const SortedStrands sorted = sort_strands(strands, frame, progress);
-    progress.report(0.2);
-    const ExtinctionBricks bricks = deposit_strands(sorted, progress);
-    progress.report(0.3);
-    result.density = std::make_shared<const DensityGrid>(frame, sorted, bricks);
-    result.occupied_voxels = result.density->occupied_voxels();
-
-    // The sweep always sums up four moments: the near-field correction needs them.
-    const DirectionMoments moments(directions, settings.sh_bands, true);
-    SweepRequest request{directions, moments, scene.receiver};
-    if (scene.occluder)
-        vertex_shadow.emplace(strands.positions, *scene.occluder, shadow_scale(strands.positions, *scene.occluder),
-                              progress);
-    request.vertex_shadow = vertex_shadow ? &*vertex_shadow : nullptr;
-    request.receiver_shadow = receiver_shadow ? &*receiver_shadow : nullptr;
-    ProgressPart sweeping = progress.part(0.3, 0.7);
-    const DirectionSums sums = sweep_directions(frame, sorted, bricks, request, sweeping);
-    auto average =
-        correct_near_field(strands, frame, sorted, bricks, angular_means(sums.vertices, directions.size()), progress);
-    DirectionalMeans answers = directional_answers(sums.vertices, sorted.vertices, std::move(average),
-                                                   directions.size(), settings.sh_bands, settings.bent_cone);
-    result.average = std::move(answers.average);
-    result.sh = std::move(answers.sh);
-    result.bent_cone = std::move(answers.bent_cone);
-    if (scene.receiver) result.receiver = answer_receiver(sums.receivers, result.warnings);
+    const std::optional<PointShadow> vertex_shadow = shadow_on_vertices(scene, progress);
+    const std::vector<Vec3f> positions = receiver_positions(scene, volume.frame);
+    const PointSet vertices{.positions = volume.sorted.vertex_positions,
+                            .model_index = volume.sorted.vertices,
+                            .vectors = {},
+                            .shadow = vertex_shadow ? &*vertex_shadow : nullptr};
+    PointSet receiver{.positions = positions, .model_index = {}, .vectors = {}, .shadow = {}};
+    if (scene.receiver) receiver.vectors = scene.receiver->normals;
+    if (receiver_shadow) receiver.shadow = &*receiver_shadow;
+    evaluate({scene, settings, directions, vertices, scene.receiver ? &receiver : nullptr}, volume, evaluating, result);
+    if (scene.keep_density) result.density = std::make_shared<const DensityGrid>(volume);
     progress.report(1);
     return result;
 }

@@ -8,7 +8,8 @@
 #include <fstream>
 
 #include "core/base/error.h"
-#include "tests/core/volume/stages.h"
+#include "core/volume/transmittance.h"
+#include "tests/core/volume/volume_steps.h"
 #include "tests/support/strand_models.h"
 #include "tests/support/temporary_folder.h"
 
@@ -33,10 +34,10 @@ openvdb::FloatGrid::Ptr read_density(const std::filesystem::path& file) {
 
 TEST(DensityGrid, WrittenAndReadBackIsTheExtinctionThatTheSweepUsed) {
     const StrandGeometry strands = fibres_off_centre();
-    const Stages stages(strands, with_voxels(40));
-    const GridFrame& frame = stages.frame;
+    const HairVolume volume = volume_of(strands, with_voxels(40));
+    const GridFrame& frame = volume.frame;
     const TemporaryFolder folder;
-    DensityGrid(frame, stages.sorted, stages.bricks).write(folder / "density.vdb");
+    DensityGrid(volume).write(folder / "density.vdb");
     const auto grid = read_density(folder / "density.vdb");
     ASSERT_TRUE(grid);
     EXPECT_EQ(grid->getGridClass(), openvdb::GRID_FOG_VOLUME);
@@ -44,41 +45,42 @@ TEST(DensityGrid, WrittenAndReadBackIsTheExtinctionThatTheSweepUsed) {
     for (int i = 0; i < frame.voxels(0); ++i)
         for (int j = 0; j < frame.voxels(1); ++j)
             for (int k = 0; k < frame.voxels(2); ++k) {
-                const std::int32_t slot = stages.sorted.slot_of_brick[frame.brick_of(i, j, k)];
+                const std::int32_t slot = volume.sorted.slot_of_brick[frame.brick_of(i, j, k)];
                 const auto voxel = static_cast<std::size_t>(GridFrame::voxel_in_brick(i, j, k));
-                const float trace = slot < 0 ? 0 : stages.bricks.trace[static_cast<std::size_t>(slot) * 512 + voxel];
+                const float trace = slot < 0 ? 0 : volume.bricks.trace(static_cast<std::size_t>(slot), voxel);
                 occupied += trace > 0;
                 const float density = grid->tree().getValue({i, j, k});
                 ASSERT_EQ(density, trace * static_cast<float>(1 / frame.voxel_size));  // one float product: exact
                 ASSERT_EQ(grid->tree().isValueOn({i, j, k}), trace > 0);
             }
     EXPECT_EQ(grid->activeVoxelCount(), occupied);
+    EXPECT_EQ(volume.bricks.occupied_voxels, occupied);
     EXPECT_GT(occupied, 10'000u);
 }
 
 TEST(DensityGrid, TraceIsTheSumOfTheHalvesThatTheSweepLoads) {
-    const Stages stages(fibres_off_centre(), with_voxels(40));
+    const HairVolume volume = volume_of(fibres_off_centre(), with_voxels(40));
     const auto value = [&](std::size_t brick, int component, std::size_t voxel) {
-        const std::uint16_t bits = stages.bricks.component(brick, component)[voxel];  // a positive half float
+        const std::uint16_t bits = volume.bricks.component(brick, component)[voxel];  // a positive half float
         const int exponent = bits >> 10, fraction = bits & 1023;
         return exponent ? std::ldexp(1024 + fraction, exponent - 25) : std::ldexp(fraction, -24);
     };
-    for (std::size_t b = 0; b < stages.sorted.brick_count(); ++b)
+    for (std::size_t b = 0; b < volume.sorted.brick_count(); ++b)
         for (std::size_t v = 0; v < 512; ++v)
-            ASSERT_EQ(stages.bricks.trace[b * 512 + v], static_cast<float>(value(b, 0, v)) +
-                                                            static_cast<float>(value(b, 1, v)) +
-                                                            static_cast<float>(value(b, 2, v)));
+            ASSERT_EQ(volume.bricks.trace(b, v), static_cast<float>(value(b, 0, v)) +
+                                                     static_cast<float>(value(b, 1, v)) +
+                                                     static_cast<float>(value(b, 2, v)));
 }
 
 TEST(DensityGrid, PlacesVoxelCentresInModelSpace) {
-    const Stages stages(fibres_off_centre(), with_voxels(40));
+    const HairVolume volume = volume_of(fibres_off_centre(), with_voxels(40));
     const TemporaryFolder folder;
-    DensityGrid(stages.frame, stages.sorted, stages.bricks).write(folder / "density.vdb");
+    DensityGrid(volume).write(folder / "density.vdb");
     const auto grid = read_density(folder / "density.vdb");
-    EXPECT_DOUBLE_EQ(grid->voxelSize().x(), stages.frame.voxel_size);
+    EXPECT_DOUBLE_EQ(grid->voxelSize().x(), volume.frame.voxel_size);
     for (const auto [i, j, k] : {std::array{0, 0, 0}, {1, 2, 3}, {40, 17, 5}}) {
         const auto world = grid->indexToWorld(openvdb::Coord(i, j, k));
-        const GridFrame& frame = stages.frame;
+        const GridFrame& frame = volume.frame;
         EXPECT_NEAR(world.x(), double(frame.origin.x) + (i + 0.5) * frame.voxel_size, 1e-12);
         EXPECT_NEAR(world.y(), double(frame.origin.y) + (j + 0.5) * frame.voxel_size, 1e-12);
         EXPECT_NEAR(world.z(), double(frame.origin.z) + (k + 0.5) * frame.voxel_size, 1e-12);
@@ -93,20 +95,22 @@ TEST(DensityGrid, TellsWhereVoxelsAreThatAreTooSmallForATransformOfOpenVdb) {
     StrandModel model;
     model.add(straight({0, 0, 0}, {1, 2, 3}, 9), 0.001);
     const StrandGeometry strands = model.geometry([&](const Vec3d& p) { return p * scale; }, scale);
-    const Stages stages(strands, with_voxels(32));
+    const HairVolume volume = volume_of(strands, with_voxels(32));
     const TemporaryFolder folder;
-    DensityGrid(stages.frame, stages.sorted, stages.bricks).write(folder / "density.vdb");
+    DensityGrid(volume).write(folder / "density.vdb");
     const auto grid = read_density(folder / "density.vdb");
-    EXPECT_EQ(grid->metaValue<double>("voxel_size"), stages.frame.voxel_size);
+    EXPECT_EQ(grid->metaValue<double>("voxel_size"), volume.frame.voxel_size);
     const auto centre = grid->metaValue<openvdb::Vec3d>("first_voxel_centre");
-    EXPECT_NEAR(centre.x(), double(stages.frame.origin.x) + stages.frame.voxel_size / 2, 1e-20);
+    EXPECT_NEAR(centre.x(), double(volume.frame.origin.x) + volume.frame.voxel_size / 2, 1e-20);
 }
 
 /// Integral of the exported density over opacity * width * length of the strands.
 double mass_ratio(const StrandModel& model, double voxel_size) {
     const StrandGeometry strands = model.geometry();
     Progress progress;
-    const Transmittance baked = bake_transmittance_volume({strands}, with_voxel_size(voxel_size, 1), progress);
+    TransmittanceScene scene{strands};
+    scene.keep_density = true;
+    const Transmittance baked = bake_transmittance_volume(scene, with_voxel_size(voxel_size, 1), progress);
     const TemporaryFolder folder;
     baked.density->write(folder / "density.vdb");
     double mass = 0, expected = 0;
@@ -146,11 +150,12 @@ TEST(DensityGrid, HoldsIsotropicStrandsLessTheMixingFactor) {
 
 TEST(DensityGrid, GivesTheSameBytesEachTimeAndATagOfItsContents) {
     // OpenVDB itself puts a random UUID into each file: 36 characters from byte 21.
-    const Stages stages(fibres_off_centre(), with_voxels(40)), coarser(fibres_off_centre(), with_voxels(32));
-    const DensityGrid grid(stages.frame, stages.sorted, stages.bricks);
+    const HairVolume volume = volume_of(fibres_off_centre(), with_voxels(40)),
+                     coarser = volume_of(fibres_off_centre(), with_voxels(32));
+    const DensityGrid grid(volume);
     const std::string bytes = grid.encode();
     EXPECT_TRUE(bytes == grid.encode());
-    EXPECT_TRUE(bytes == DensityGrid(stages.frame, stages.sorted, stages.bricks).encode());
+    EXPECT_TRUE(bytes == DensityGrid(volume).encode());
     const TemporaryFolder folder;
     grid.write(folder / "density.vdb");
     openvdb::initialize();
@@ -158,13 +163,13 @@ TEST(DensityGrid, GivesTheSameBytesEachTimeAndATagOfItsContents) {
     in.open();
     EXPECT_EQ(in.getUniqueTag(), bytes.substr(21, 36));
     EXPECT_TRUE(in.hasGrid("density"));
-    const DensityGrid other(coarser.frame, coarser.sorted, coarser.bricks);
+    const DensityGrid other(coarser);
     EXPECT_NE(other.encode().substr(21, 36), bytes.substr(21, 36));
 }
 
 TEST(DensityGrid, CannotBeWrittenWhereThereIsNoFolder) {
-    const Stages stages(fibres_off_centre(), with_voxels(40));
-    const DensityGrid grid(stages.frame, stages.sorted, stages.bricks);
+    const HairVolume volume = volume_of(fibres_off_centre(), with_voxels(40));
+    const DensityGrid grid(volume);
     try {
         grid.write("/nonexistent/folder/density.vdb");
         ADD_FAILURE() << "was written";

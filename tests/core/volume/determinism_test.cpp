@@ -41,7 +41,7 @@ TEST(Determinism, GivesTheSameBitsForAnyNumberOfThreads) {
     }
 }
 
-/// Lets Highway choose among `targets` only, until the end of its life.
+/// Lets Highway choose among `targets` only, as long as the object lives.
 class OnlyTargets {
 public:
     explicit OnlyTargets(std::int64_t targets) {
@@ -55,7 +55,8 @@ public:
 };
 
 TEST(Determinism, AgreesBetweenSimdTargetsTo1e5) {
-    // HWY_TARGETS of this file is what core/volume was compiled for: here AVX3, AVX2, SSE4, SSSE3 and the scalar path.
+    // HWY_TARGETS of this file are the targets that core/volume is compiled for: here AVX3, AVX2, SSE4, SSSE3 and the
+    // scalar path.
     const StrandGeometry strands = wavy_ball();
     std::int64_t scalar = HWY_STATIC_TARGET;
     std::vector<float> expected;

@@ -10,7 +10,7 @@
 #include "core/environment/sh_rotation.h"
 #include "core/visibility/direction_moments.h"
 #include "core/visibility/direction_set.h"
-#include "tests/core/volume/stages.h"
+#include "tests/core/volume/volume_steps.h"
 #include "tests/support/analytic_media.h"
 #include "tests/support/random_media.h"
 #include "tests/support/strand_models.h"
@@ -63,11 +63,11 @@ TEST(Directional, CoefficientsAreTheDefinitionOnTheSweepOfEveryDirection) {
     // T_k of the sweep alone, one direction at a time; then the factor of the near-field correction. The fixed point
     // rounds a sum of four directions by 2^-25 of its range: 40 directions, 4 pi: 1e-6; and floats.
     const StrandGeometry strands = lopsided_ball().geometry();
-    const Stages stages(strands, with_voxels(48));
+    const HairVolume volume = volume_of(strands, with_voxels(48));
     const auto directions = make_directions(DirectionSet::fibonacci, 40, 0);
     DirectionalSums sums(strands.vertex_count(), directions, 4, true);
     for (std::size_t k = 0; k < directions.size(); ++k) {
-        const auto t = sweep_one(strands, stages, directions[k]);
+        const auto t = sweep_one(volume, directions[k]);
         for (std::size_t v = 0; v < t.size(); ++v) sums.add(v, k, double{t[v]});
     }
     const DirectionalMeans swept = sums.means();

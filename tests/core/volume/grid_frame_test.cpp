@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/volume/transmittance.h"
 #include "tests/support/strand_models.h"
 
 namespace hairbake {
@@ -17,34 +18,30 @@ StrandGeometry diagonal(double width) {
     return model.geometry();
 }
 
-GridFrame frame_of(const StrandGeometry& strands, const TransmittanceSettings& settings, bool* bounded = nullptr) {
-    bool ignored;
-    return make_grid_frame(strands, settings, bounded ? bounded : &ignored);
-}
-
 TEST(GridFrame, DividesTheLongestSideIntoTheVoxelsAskedFor) {
     for (const int voxels : {32, 100, 256, 1024}) {
-        bool bounded = true;
-        EXPECT_DOUBLE_EQ(frame_of(diagonal(1e-4), with_voxels(voxels), &bounded).voxel_size, 4.0 / voxels);
-        EXPECT_FALSE(bounded);
+        const GridFrame frame = make_grid_frame(diagonal(1e-4), with_voxels(voxels));
+        EXPECT_DOUBLE_EQ(frame.voxel_size, 4.0 / voxels);
+        EXPECT_FALSE(frame.bounded_by_width);
     }
 }
 
 TEST(GridFrame, TakesAVoxelSizeInsteadOfACount) {
     TransmittanceSettings settings = with_voxel_size(0.0625);
     settings.voxels = 1024;
-    EXPECT_EQ(frame_of(diagonal(1e-4), settings).voxel_size, 0.0625);
+    EXPECT_EQ(make_grid_frame(diagonal(1e-4), settings).voxel_size, 0.0625);
 }
 
 TEST(GridFrame, KeepsVoxelsAtLeastTwiceAsLargeAsTheWidths) {
-    bool bounded = false;
-    const auto twice = [](double width) { return 2 * double(static_cast<float>(width)); };
-    EXPECT_DOUBLE_EQ(frame_of(diagonal(0.1), with_voxels(256), &bounded).voxel_size, twice(0.1));
-    EXPECT_TRUE(bounded);
-    EXPECT_DOUBLE_EQ(frame_of(diagonal(0.1), with_voxel_size(0.01), &bounded).voxel_size, twice(0.1));
-    EXPECT_TRUE(bounded);
-    EXPECT_DOUBLE_EQ(frame_of(diagonal(0.1), with_voxel_size(0.25), &bounded).voxel_size, 0.25);
-    EXPECT_FALSE(bounded);
+    const double twice = 2 * double(static_cast<float>(0.1));
+    for (const TransmittanceSettings& settings : {with_voxels(256), with_voxel_size(0.01)}) {
+        const GridFrame frame = make_grid_frame(diagonal(0.1), settings);
+        EXPECT_DOUBLE_EQ(frame.voxel_size, twice);
+        EXPECT_TRUE(frame.bounded_by_width);
+    }
+    const GridFrame frame = make_grid_frame(diagonal(0.1), with_voxel_size(0.25));
+    EXPECT_DOUBLE_EQ(frame.voxel_size, 0.25);
+    EXPECT_FALSE(frame.bounded_by_width);
 }
 
 TEST(GridFrame, TakesThe95thPercentileOfTheWidths) {
@@ -52,10 +49,9 @@ TEST(GridFrame, TakesThe95thPercentileOfTheWidths) {
     for (const int wide : {4, 6}) {  // 8 and 12 wide points: ranks from 192 and from 188
         StrandModel model;
         for (int s = 0; s < 100; ++s) model.add(straight({0, 0.01 * s, 0}, {4, 0, 0}), s < wide ? 0.5 : 0.001);
-        bool bounded = false;
-        const double size = frame_of(model.geometry(), with_voxels(256), &bounded).voxel_size;
-        EXPECT_EQ(bounded, wide == 6);
-        EXPECT_DOUBLE_EQ(size, wide == 6 ? 1.0 : 4.0 / 256);
+        const GridFrame frame = make_grid_frame(model.geometry(), with_voxels(256));
+        EXPECT_EQ(frame.bounded_by_width, wide == 6);
+        EXPECT_DOUBLE_EQ(frame.voxel_size, wide == 6 ? 1.0 : 4.0 / 256);
     }
 }
 
@@ -84,9 +80,9 @@ TEST(GridFrame, WarnsOfTheWidthBoundWithTheVoxelSizeThatHolds) {
 }
 
 TEST(GridFrame, RefusesMoreThan1024VoxelsAndNamesTheField) {
-    EXPECT_NO_THROW(frame_of(diagonal(1e-5), with_voxel_size(4.0 / 1024)));
+    EXPECT_NO_THROW(make_grid_frame(diagonal(1e-5), with_voxel_size(4.0 / 1024)));
     try {
-        frame_of(diagonal(1e-5), with_voxel_size(4.0 / 1026));
+        make_grid_frame(diagonal(1e-5), with_voxel_size(4.0 / 1026));
         ADD_FAILURE() << "was accepted";
     } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::usage);
@@ -105,7 +101,7 @@ TEST(GridFrame, HoldsEveryVertexWithAVoxelOfMarginBelow) {
                 model.add({random_point_in_box(random, Vec3d(-1), Vec3d(1)) + Vec3d(offset, -offset, offset)}, 1e-6);
             model.add_box(Vec3d(-1) + Vec3d(offset, -offset, offset), Vec3d(1) + Vec3d(offset, -offset, offset));
             const StrandGeometry strands = model.geometry();
-            const GridFrame frame = frame_of(strands, with_voxels(voxels));
+            const GridFrame frame = make_grid_frame(strands, with_voxels(voxels));
             for (const Vec3f& p : strands.positions)
                 for (int axis = 0; axis < 3; ++axis) {
                     const float g = frame.to_grid(p)[axis];

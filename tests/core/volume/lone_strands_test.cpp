@@ -6,7 +6,7 @@
 
 #include "core/visibility/direction_set.h"
 #include "core/volume/near_field_window.h"
-#include "tests/core/volume/stages.h"
+#include "tests/core/volume/volume_steps.h"
 #include "tests/support/strand_models.h"
 
 namespace hairbake {
@@ -50,11 +50,11 @@ OwnDepth own_depth(double ratio, int strand_count) {
     double sum[2]{}, sum2[2]{};
     for (int k = 0; k < strand_count; ++k) {
         const StrandGeometry strands = lone_strand(random, ratio * h, 2);
-        const Stages stages(strands, with_voxel_size(h));
-        auto means = sweep_means(strands, stages, directions);
-        for (AngularMean& mean : means) mean = {mean.average / 2, mean.slope / 2};
+        const HairVolume volume = volume_of(strands, with_voxel_size(h));
+        std::vector<std::vector<AngularMean>> means{sweep_means(volume, directions)};
+        for (AngularMean& mean : means[0]) mean = {mean.average / 2, mean.slope / 2};
         Progress progress;
-        const auto a = correct_near_field(strands, stages.frame, stages.sorted, stages.bricks, means, progress);
+        const auto a = correct_near_field(strands, volume, means, progress)[0];
         const double share[2] = {1, 0.5};  // of the factor: an end has its strand on one side only
         for (const std::uint32_t v : {1u, 0u}) {
             const std::size_t c = v == 1 ? 0 : 1;
@@ -76,6 +76,27 @@ TEST(NearFieldWindow, OwnStrandBeyondIsWhatALoneStrandKeepsInTheMean) {
     EXPECT_LT(own.middle_error, 0.012);
     EXPECT_NEAR(own.middle, expected, 4 * own.middle_error);
     EXPECT_NEAR(own.end, expected / 2, 4 * own.end_error);
+}
+
+TEST(NearField, CorrectsEachOfSeveralMeansAsItWouldAlone) {
+    // Means of three lights, and one that is dark everywhere: the correction leaves it alone but for the own strand.
+    Random random(7);
+    StrandModel model;
+    fill(model, ball(1), Vec3d(-1), Vec3d(1), {.width = 0.02, .length = 0.3, .extinction = 1.5}, random);
+    const StrandGeometry strands = model.geometry();
+    const HairVolume volume = volume_of(strands, with_voxels(32));
+    std::vector<std::vector<AngularMean>> means(4);
+    for (const int directions : {7, 20, 50})
+        means[directions == 7    ? 0
+              : directions == 20 ? 1
+                                 : 3] = sweep_means(volume, make_directions(DirectionSet::fibonacci, directions, 0));
+    means[2].assign(strands.vertex_count(), {0.01f, {}});
+    Progress progress;
+    const auto together = correct_near_field(strands, volume, means, progress);
+    ASSERT_EQ(together.size(), 4u);
+    for (std::size_t m = 0; m < 4; ++m)
+        EXPECT_EQ(together[m], correct_near_field(strands, volume, std::span(&means[m], 1), progress)[0]) << m;
+    EXPECT_TRUE(correct_near_field(strands, volume, {}, progress).empty());
 }
 
 TEST(Transmittance, OfStrandsOfOnePointIsOne) {

@@ -24,9 +24,9 @@ MeanError baked_error(const std::function<Medium(Random&)>& make, int realisatio
     });
 }
 
-/// Tolerance: four standard errors of the realisations' mean; 1 % of A times the optical depth, at most 0.37 %, for
-/// what the form of the extinction leaves in voxels of few strands; 0.001 for 100 directions, averaged over the probes'
-/// places; `more` for what the test says.
+/// Tolerance: four standard errors of the realisations' mean; 1 % of A times the optical depth, at most 0.37 %, for the
+/// error of the extinction's form in voxels of few strands; 0.001 for 100 directions, averaged over the probes' places;
+/// `more`, which the test explains.
 void expect_transmittance(const std::function<Medium(Random&)>& make, int realisations,
                           const TransmittanceSettings& settings, double more = 0) {
     const MeanError error = baked_error(make, realisations, settings);

@@ -1,4 +1,4 @@
-// The volume method with an occluder: solid angles in closed form, and the traced truth.
+// The volume method with an occluder, against solid angles in closed form and against the tracer.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// One deep opacity map: what is drawn into it, and what a vertex sees through it.
+// One deep opacity map: drawing and look-ups.
 #include "core/volume/opacity_map.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ using namespace hairbake::test_support;
 
 OpacityMapSettings maps(int layers, double spacing, int resolution) { return {layers, spacing, resolution}; }
 
-/// A map of a model from one direction, with what its look-ups need.
+/// A map of a model from one direction, and the arguments of its look-ups.
 struct Drawn {
     StrandGeometry strands;
     OpacityView view;
@@ -118,9 +118,9 @@ TEST(OpacityMap, HoldsTheProjectedAreaTimesOpacityWhateverItsResolution) {
 }
 
 TEST(OpacityMap, CrossingStrandsShadowTheLowerOneByTheUppersCoverage) {
-    // Light from +z. The upper strand runs along x through the texels of one row and covers w / texel of each; the
-    // lower one's vertex under it lies as deep as the layers reach, so it sees that coverage with the row's weight in
-    // the bilinear blend, and nothing of the strand it belongs to. The upper one sees nothing.
+    // Light from +z. The upper strand runs along x through the texels of one row and covers w / texel of each. The
+    // vertex of the lower strand under it lies as deep as the layers reach: its optical depth is that coverage times
+    // the row's weight in the bilinear blend, without its own strand. Nothing shadows the upper strand.
     for (const double y : {0.0, 0.013, 0.31, -0.47})
         for (const double opacity : {1.0, 0.25}) {
             StrandModel model;
@@ -139,7 +139,7 @@ TEST(OpacityMap, CrossingStrandsShadowTheLowerOneByTheUppersCoverage) {
 TEST(OpacityMap, LayersInterpolateBetweenTheirEndsAndStayConstantBehindTheLast) {
     // A stack of strands along x, one under the other at the depths 0, 1, 2 ... 70 (in texels of 1/30), each covering
     // c = w / texel of the texels of one row. Layers that end after 7, 21 and 49 texels hold the strands at depths up
-    // to there, 8 and 22 of them, and the last one all 71; between the ends the depth runs straight. The probes lie in
+    // to there, 8 and 22 of them, and the last one all 71; between the ends the depth is linear. The probes lie in
     // the middle of the row.
     const double texel = 1.0 / 30, w = 0.001;
     StrandModel model;

@@ -52,15 +52,15 @@ double mean_of(const std::vector<float>& a) {
 }
 
 TEST(OpacityMaps, OfALoneStraightStrandAreOne) {
-    // Whatever the cut of the strand into segments: all of its own run through a vertex's texels is left out. What is
-    // left are rounding errors of a sum.
+    // A vertex's own strand does not count in its texels, for any number of segments. Only rounding errors of a sum
+    // remain.
     Random random(1);
     for (int k = 0; k < 30; ++k) {
         const Vec3d d = random_direction(random), p = random_point_in_ball(random, 0.1);
         StrandModel model;
         model.add(straight(p - d, p + d, 1 + 7 * k), 0.003);
         const std::size_t own = model.vertex_count();
-        model.add_box(Vec3d(-1.2), Vec3d(1.2));  // its two points may well see the strand
+        model.add_box(Vec3d(-1.2), Vec3d(1.2));  // the strand may shadow its two points
         const auto a = bake_maps({model.geometry()}, with_maps(3, 2, 128)).average;
         for (std::size_t v = 0; v < own; ++v) {
             EXPECT_NEAR(a[v], 1, 1e-5);
@@ -99,9 +99,9 @@ TEST(OpacityMaps, HardlyChangeWhenTheModelIsTurned) {
 }
 
 TEST(OpacityMaps, ComeCloserToTheTraceWithMoreLayers) {
-    // Layers of one thickness, so that all of them grow thinner. The trace takes the same directions, so that what
-    // differs is the map's: measured 0.19, 0.14, 0.11 and 0.09 (100 directions), where the volume method has 0.08 (200
-    // strands, each as wide as half a texel).
+    // Layers of one thickness, so that all of them grow thinner. The trace takes the same directions, so the
+    // difference is the error of the maps: measured 0.19, 0.14, 0.11 and 0.09 (100 directions), where the volume method
+    // has 0.08 (200 strands, each as wide as half a texel).
     const StrandGeometry strands = small_groom();
     const auto traced = trace(strands, all_vertices(strands), make_directions(DirectionSet::fibonacci, 36, 1));
     double last = 1;

@@ -1,4 +1,4 @@
-// TressFX files that no one here made, baked; skipped where they are not.
+// Bakes of TressFX files from other projects. Skipped where the files are missing.
 #include <gtest/gtest.h>
 
 #include "core/hair/hair_file.h"

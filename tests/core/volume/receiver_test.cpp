@@ -1,4 +1,4 @@
-// What the sweep tells the points of a receiving surface.
+// The hemisphere means of the sweep at the points of a receiving surface.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -7,7 +7,7 @@
 #include "core/base/parallel.h"
 #include "core/visibility/direction_set.h"
 #include "core/visibility/hemisphere_means.h"
-#include "tests/core/volume/stages.h"
+#include "tests/core/volume/volume_steps.h"
 #include "tests/support/random_media.h"
 #include "tests/support/receiver_points.h"
 #include "tests/support/strand_models.h"
@@ -66,7 +66,7 @@ TEST(Receiver, IsExactlyOneWhereNothingIsInTheWay) {
 }
 
 TEST(Receiver, IsTheMeanOfTheSweepOfEveryDirection) {
-    // Vertices that only look, at the points' places: T_k one direction at a time. The fixed point rounds by 2^-25 of
+    // Lone vertices at the points' places give T_k, one direction at a time. The fixed point rounds by 2^-25 of
     // the range for four directions: 1e-5 of the means.
     StrandModel model = block();
     Random random(19);
@@ -79,11 +79,11 @@ TEST(Receiver, IsTheMeanOfTheSweepOfEveryDirection) {
     const auto first = model.add_probes(places);
     const StrandGeometry strands = model.geometry();
     const TriangleMesh receiver = receiver_points(points);
-    const Stages stages(strands, with_voxel_size(1 / 32.0));
+    const HairVolume volume = volume_of(strands, with_voxel_size(1 / 32.0));
     const auto directions = make_directions(DirectionSet::fibonacci, 50, 0);
     std::vector<HemisphereSums> sums(places.size());
     for (const Vec3d& w : directions) {
-        const auto t = sweep_one(strands, stages, w);
+        const auto t = sweep_one(volume, w);
         for (std::size_t i = 0; i < sums.size(); ++i)
             sums[i].add(double{t[first + i]}, dot(Vec3d(receiver.normals[i]), w));
     }
@@ -93,9 +93,9 @@ TEST(Receiver, IsTheMeanOfTheSweepOfEveryDirection) {
 }
 
 TEST(Receiver, OutsideTheGridSeesWhatALargerGridWouldShow) {
-    // The same voxels in a grid of four times the side (the bounds move by whole voxels): there all points lie inside.
-    // The lattice of rays lies otherwise in them, by up to half a voxel: that is noise without bias. A point that
-    // missed its rays, or read those of others, would be off by tenths.
+    // In a grid of four times the side all points lie inside. Its voxels are the same (the bounds move by whole
+    // voxels). Its lattice of rays is shifted by up to half a voxel, which is noise without bias. A point that read the
+    // wrong rays would be wrong by tenths.
     StrandModel model = block();
     const StrandGeometry small = model.geometry();
     model.add_box(Vec3d(-2), Vec3d(2));
@@ -117,7 +117,7 @@ TEST(Receiver, OutsideTheGridSeesWhatALargerGridWouldShow) {
     EXPECT_LT(std::sqrt(square / double(outside.size())), 0.015);
 }
 
-/// What a point under a box of isotropic fibres of this extinction sees: 4,096 ways through it.
+/// The means of a point under a box of isotropic fibres of this extinction, from 4,096 rays through the box.
 std::array<float, 2> under_box(double extinction, const Vec3d& p) {
     HemisphereSums sums;
     for (const Vec3d& w : make_directions(DirectionSet::fibonacci, 4096, 0)) {
@@ -128,7 +128,7 @@ std::array<float, 2> under_box(double extinction, const Vec3d& p) {
 }
 
 TEST(Receiver, UnderASlabOfIsotropicFibresSeesTheExponentialOfTheWays) {
-    // A voxel below a slab of height 1, 10 wide. Were it infinite the means would be the exponential integrals E2 and
+    // A voxel below a slab of height 1, 10 wide. For an infinite slab the means are the exponential integrals E2 and
     // 2 E3: 0.327 and 0.443 at depth 0.5, and the box's are within 0.05 of that. Two realisations scatter by less than
     // 0.01; the slab's edge, by a quarter of a voxel, by 0.01.
     for (const double tau : {0.5, 1.5}) {

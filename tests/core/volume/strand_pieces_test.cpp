@@ -7,7 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "tests/core/volume/stages.h"
+#include "tests/core/volume/volume_steps.h"
 #include "tests/support/strand_models.h"
 
 namespace hairbake {
@@ -30,15 +30,15 @@ StrandGeometry tangle() {
 
 TEST(SortedStrands, HoldEveryVertexOnceInItsBrickInModelOrder) {
     const StrandGeometry strands = tangle();
-    const Stages stages(strands, with_voxels(50));
+    const HairVolume volume = volume_of(strands, with_voxels(50));
     std::vector<int> seen(strands.vertex_count());
-    for (std::size_t b = 0; b < stages.sorted.brick_count(); ++b)
-        for (std::uint32_t i = stages.sorted.vertex_begin[b]; i < stages.sorted.vertex_begin[b + 1]; ++i) {
-            const std::uint32_t v = stages.sorted.vertices[i];
+    for (std::size_t b = 0; b < volume.sorted.brick_count(); ++b)
+        for (std::uint32_t i = volume.sorted.vertex_begin[b]; i < volume.sorted.vertex_begin[b + 1]; ++i) {
+            const std::uint32_t v = volume.sorted.vertices[i];
             ++seen[v];
-            EXPECT_EQ(stages.frame.brick_at(stages.frame.to_grid(strands.positions[v])), stages.sorted.bricks[b]);
-            if (i > stages.sorted.vertex_begin[b]) {
-                EXPECT_LT(stages.sorted.vertices[i - 1], v);
+            EXPECT_EQ(volume.frame.brick_at(volume.frame.to_grid(strands.positions[v])), volume.sorted.bricks[b]);
+            if (i > volume.sorted.vertex_begin[b]) {
+                EXPECT_LT(volume.sorted.vertices[i - 1], v);
             }
         }
     EXPECT_EQ(seen, std::vector(strands.vertex_count(), 1));
@@ -46,10 +46,10 @@ TEST(SortedStrands, HoldEveryVertexOnceInItsBrickInModelOrder) {
 
 TEST(SortedStrands, CutEverySolidSegmentWithAnOpacityIntoPiecesOfAtMostAVoxel) {
     const StrandGeometry strands = tangle();
-    const Stages stages(strands, with_voxels(50));
-    const GridFrame& frame = stages.frame;
+    const HairVolume volume = volume_of(strands, with_voxels(50));
+    const GridFrame& frame = volume.frame;
     std::map<std::uint32_t, std::vector<StrandPiece>> pieces;
-    for (const StrandPiece& piece : stages.sorted.pieces) pieces[piece.segment].push_back(piece);
+    for (const StrandPiece& piece : volume.sorted.pieces) pieces[piece.segment].push_back(piece);
     for (std::uint32_t i = 0; i < strands.vertex_count(); ++i) {
         const bool solid = strands.segments[i] == Segment::solid;
         const float opacity = solid ? 0.5f * (strands.opacities[i] + strands.opacities[i + 1]) : 0;
@@ -73,8 +73,8 @@ TEST(SortedStrands, CutEverySolidSegmentWithAnOpacityIntoPiecesOfAtMostAVoxel) {
 }
 
 TEST(SortedStrands, PutEveryPieceIntoItsBrickAndVoxel) {
-    const Stages stages(tangle(), with_voxels(50));
-    const SortedStrands& sorted = stages.sorted;
+    const HairVolume volume = volume_of(tangle(), with_voxels(50));
+    const SortedStrands& sorted = volume.sorted;
     std::size_t count = 0;
     for (std::size_t b = 0; b < sorted.brick_count(); ++b) {
         EXPECT_EQ(sorted.slot_of_brick[sorted.bricks[b]], static_cast<std::int32_t>(b));
@@ -84,21 +84,21 @@ TEST(SortedStrands, PutEveryPieceIntoItsBrickAndVoxel) {
         for (std::size_t voxel = 0; voxel < 512; ++voxel)
             for (const StrandPiece& piece : sorted.pieces_in(b, voxel)) {
                 ++count;
-                EXPECT_EQ(stages.frame.brick_at(piece.centre), sorted.bricks[b]);
+                EXPECT_EQ(volume.frame.brick_at(piece.centre), sorted.bricks[b]);
                 EXPECT_EQ(piece.voxel_in_brick(), static_cast<int>(voxel));
             }
     }
     EXPECT_EQ(count, sorted.pieces.size());
-    EXPECT_EQ(sorted.slot_at(stages.frame, -1, 0, 0), -1);
-    EXPECT_EQ(sorted.slot_at(stages.frame, 0, stages.frame.bricks[1], 0), -1);
+    EXPECT_EQ(sorted.slot_at(volume.frame, -1, 0, 0), -1);
+    EXPECT_EQ(sorted.slot_at(volume.frame, 0, volume.frame.bricks[1], 0), -1);
 }
 
 TEST(SortedStrands, AreTheSameForAnyNumberOfThreads) {
     const StrandGeometry strands = tangle();
-    const Stages one(strands, with_voxels(50));
+    const HairVolume one = volume_of(strands, with_voxels(50));
     for (const int threads : {1, 2, 7})
         with_threads(threads, [&] {
-            const Stages other(strands, with_voxels(50));
+            const HairVolume other = volume_of(strands, with_voxels(50));
             EXPECT_EQ(other.sorted.vertices, one.sorted.vertices);
             EXPECT_EQ(other.sorted.voxel_end, one.sorted.voxel_end);
             EXPECT_EQ(other.bricks.half, one.bricks.half);

@@ -4,8 +4,10 @@
 
 #include <cmath>
 
-#include "core/visibility/direction_moments.h"
-#include "tests/core/volume/stages.h"
+#include "core/visibility/direction_set.h"
+#include "core/volume/direction_sweep.h"
+#include "core/volume/hemisphere_reader.h"
+#include "tests/core/volume/volume_steps.h"
 #include "tests/support/strand_models.h"
 
 namespace hairbake {
@@ -16,7 +18,7 @@ using namespace hairbake::test_support;
 TEST(SweepScale, NeverOverflowsAndIsTheLargestPowerOfTwoButOne) {
     // `directions` terms of magnitude 1, each group's sum rounded by 1/2, stay below 2^31; a term is kept to 2^-18.
     for (int n = 1; n <= 4096; ++n) {
-        const double scale = double(sweep_scale(n));
+        const double scale = double(sweep_scale(static_cast<std::size_t>(n)));
         EXPECT_EQ(std::exp2(std::floor(std::log2(scale))), scale);
         EXPECT_LT(scale * n + 0.5 * n, 2147483648.0) << n;
         EXPECT_GE(scale * n, 536870912.0) << n;
@@ -80,12 +82,12 @@ TEST(Sweep, OfAUniformCombedBlockIsTheExponentialOfTheWay) {
     // way out of the block. The nearest ray is half a voxel beside the vertex at most, and half a voxel beside itself
     // in a slice, on either axis. Halves are rounded by 2^-11.
     const Block block;
-    const Stages stages(block.strands, with_voxel_size(1));
+    const HairVolume volume = volume_of(block.strands, with_voxel_size(1));
     const double across = Block::w * (1 + 0.381 * Block::w);
     Random random(14);
     for (int k = 0; k < 200; ++k) {
         const Vec3d l = random_direction(random);
-        const auto t = sweep_one(block.strands, stages, l);
+        const auto t = sweep_one(volume, l);
         const double sine = std::sqrt(1 - l.z * l.z);
         for (std::uint32_t p = block.first_probe; p < block.first_probe + 4; ++p) {
             const auto [least, most] = ways_out(Vec3d(block.strands.positions[p]), l);
@@ -98,41 +100,69 @@ TEST(Sweep, OfAUniformCombedBlockIsTheExponentialOfTheWay) {
 TEST(Sweep, AlongTheAxesIsExact) {
     // Rays stay in their column: 19.5 voxels above and below, of the strands' full depth; along the strands nothing.
     const Block block;
-    const Stages stages(block.strands, with_voxel_size(1));
+    const HairVolume volume = volume_of(block.strands, with_voxel_size(1));
     const double across = Block::w * (1 + 0.381 * Block::w);
     for (const Vec3d& l : {Vec3d(1, 0, 0), Vec3d(-1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, -1, 0)}) {
         const double way = l.x + l.y > 0 ? 19.5 : 20.5;
-        EXPECT_NEAR(sweep_one(block.strands, stages, l)[block.first_probe], std::exp(-across * way), 0.001);
+        EXPECT_NEAR(sweep_one(volume, l)[block.first_probe], std::exp(-across * way), 0.001);
     }
-    for (const double sign : {1.0, -1.0})
-        EXPECT_NEAR(sweep_one(block.strands, stages, Vec3d(0, 0, sign))[block.first_probe], 1, 1e-6);
+    for (const double sign : {1.0, -1.0}) EXPECT_NEAR(sweep_one(volume, Vec3d(0, 0, sign))[block.first_probe], 1, 1e-6);
 }
 
 TEST(Sweep, OfTwoDirectionsTogetherIsTheSumOfBoth) {
     const Block block;
-    const Stages stages(block.strands, with_voxel_size(1));
-    Progress progress;
-    const SliceLayout layout = make_slice_layout(stages.frame, stages.sorted, stages.bricks, 0, progress);
+    const HairVolume volume = volume_of(block.strands, with_voxel_size(1));
     const std::vector<Vec3d> both{normalized(Vec3d(1, 0.3, 0.2)), normalized(Vec3d(1, -0.8, 0.6))};
-    SweepScratch scratch;
-    const DirectionMoments moments(both, 0, true);
-    const std::vector<SweepDirection> directions{{both[0], moments.weights(0)}, {both[1], moments.weights(1)}};
-    SweepTotals totals;
-    totals.vertices = SweepSums(layout.slot_vertex.size(), 4);
-    sweep(layout, nullptr, directions, sweep_scale(2), {}, scratch, totals);
-    const SweepSums& sums = totals.vertices;
-    const auto a = sweep_one(block.strands, stages, both[0]), b = sweep_one(block.strands, stages, both[1]);
-    for (std::size_t i = 0; i < layout.slot_vertex.size(); ++i) {
-        if (layout.slot_vertex[i] == SliceLayout::no_vertex) continue;
-        const std::uint32_t v = stages.sorted.vertices[layout.slot_vertex[i]];
-        const auto value = [&](std::size_t c) {
-            return double(sums.values[c * sums.slots + i]) / double(sweep_scale(2));
-        };
-        EXPECT_NEAR(value(0), double(a[v]) + double(b[v]), 1e-6);  // floats near 1
-        for (int c = 0; c < 3; ++c)
-            EXPECT_NEAR(value(1 + static_cast<std::size_t>(c)), double(a[v]) * both[0][c] + double(b[v]) * both[1][c],
-                        1e-6);
+    const PointSet vertices = vertices_of(volume);
+    // T, T x, T y, T z, in the fixed point of two directions; the last in a coarser one.
+    std::vector<float> weights;
+    for (const Vec3d& l : both)
+        for (const double w : {1.0, l.x, l.y, l.z}) weights.push_back(static_cast<float>(w));
+    const float scale = sweep_scale(2);
+    const WeightReader reader(vertices, weights, {scale, scale, scale, scale / 1024});
+    const std::vector<std::uint32_t> walk{0, 1};
+    const auto sums = walk_sums(volume, both, walk, reader);
+    const auto a = sweep_one(volume, both[0]), b = sweep_one(volume, both[1]);
+    for (std::size_t place = 0; place < vertices.size(); ++place) {
+        const double t0 = double(a[volume.sorted.vertices[place]]), t1 = double(b[volume.sorted.vertices[place]]);
+        const double* sum = &sums[4 * place];
+        EXPECT_NEAR(sum[0], t0 + t1, 1e-6);  // floats near 1
+        EXPECT_NEAR(sum[1], t0 * both[0].x + t1 * both[1].x, 1e-6);
+        EXPECT_NEAR(sum[2], t0 * both[0].y + t1 * both[1].y, 1e-6);
+        EXPECT_NEAR(sum[3], t0 * both[0].z + t1 * both[1].z, 1e-6 + 512 / double(scale));  // half a unit
     }
+}
+
+TEST(Sweep, OfManyPointSetsAndReadersGivesEachWhatItGivesAlone) {
+    // Two readers share the vertices; the third reads points inside and outside the grid, with normals.
+    const Block block;
+    const HairVolume volume = volume_of(block.strands, with_voxel_size(1));
+    const std::vector<Vec3d> directions = make_directions(DirectionSet::fibonacci, 23, 0);
+    const PointSet vertices = vertices_of(volume);
+    Random random(15);
+    std::vector<Vec3f> positions, normals;
+    for (int k = 0; k < 500; ++k) {
+        positions.emplace_back(random_point_in_box(random, Vec3d(-20), Vec3d(70)));
+        normals.emplace_back(random_direction(random));
+    }
+    const PointSet others{.positions = positions, .model_index = {}, .vectors = normals, .shadow = nullptr};
+    const WeightReader ones(vertices, std::vector<float>(directions.size(), 1), {sweep_scale(directions.size())});
+    const WeightReader halves(vertices, std::vector<float>(2 * directions.size(), 0.5f), {1024, 65536});
+    const HemisphereReader hemisphere(others, directions);
+    const SweepReader* all[] = {&halves, &hemisphere, &ones};
+    Progress progress;
+    const auto together = sweep_directions(volume, directions, all, progress);
+    for (std::size_t r = 0; r < 3; ++r) {
+        const auto alone = sweep_directions(volume, directions, std::span(&all[r], 1), progress);
+        ASSERT_EQ(together[r].points(), all[r]->points().size());
+        for (std::size_t p = 0; p < together[r].points(); ++p)
+            for (std::size_t c = 0; c < together[r].components(); ++c)
+                ASSERT_EQ(together[r].of(p)[c], alone[0].of(p)[c]) << r << " " << p << " " << c;
+    }
+    // A group of up to four directions is rounded once: 23 directions are at least 6 groups on six sides, at most 12.
+    for (std::size_t p = 0; p < vertices.size(); ++p)
+        ASSERT_NEAR(together[0].of(p)[1] / 65536.0, together[2].of(p)[0] / double(sweep_scale(23)) / 2,
+                    12 * 0.5 / 65536 + 1e-5);
 }
 
 }  // namespace

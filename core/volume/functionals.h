@@ -1,0 +1,18 @@
+// The table of the functionals that the volume method knows. For one more: write its file, add a declaration and a row.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "core/volume/functional.h"
+
+namespace hairbake {
+
+/// average, sh and bent_cone of every hair vertex (vertex_moments.cpp).
+std::unique_ptr<Functional> make_vertex_moments(const FunctionalInput& input);
+/// The receiver's means over the hemisphere (receiver_hemisphere.cpp).
+std::unique_ptr<Functional> make_receiver_hemisphere(const FunctionalInput& input);
+
+constexpr std::array<MakeFunctional, 2> kFunctionals{make_vertex_moments, make_receiver_hemisphere};
+
+}  // namespace hairbake
