@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/environment/environment_settings.h"
+#include "core/fiber/fiber_settings.h"
 #include "core/hair/strand_settings.h"
 #include "core/irradiance/irradiance_settings.h"
 #include "core/visibility/transmittance_settings.h"
@@ -22,6 +23,7 @@ struct BakeRequest {
     StrandSettings strand;
     TransmittanceSettings transmittance;
     EnvironmentSettings environment_settings;  ///< part of the JSON block "irradiance"
+    FiberSettings fiber;                       ///< part of the JSON block "irradiance"
     IrradianceSettings irradiance;
     std::vector<std::string> outputs{"npy", "exr", "hair"};  ///< of output_formats(); each at most once
 
