@@ -89,7 +89,8 @@ std::vector<std::pair<std::string, std::string>> describe(const RenderRequest& r
         {"hairbake:kd", text(kd)},
         {"hairbake:ks", text(request.look.specular)}};
     for (const FiberNumber& number : fiber_numbers)
-        if (number.model == fiber.model) facts.emplace_back("hairbake:" + std::string(number.name), text(number.of(fiber)));
+        if (number.model == fiber.model)
+            facts.emplace_back("hairbake:" + std::string(number.name), text(number.of(fiber)));
     facts.insert(facts.end(), {{"hairbake:eye", text(camera.eye)},
                                {"hairbake:backward", text(camera.backward)},
                                {"hairbake:up", text(camera.up)},
@@ -211,7 +212,8 @@ void write_picture(const RenderedPicture& picture, double stops, const std::file
     else if (ending == ".png")
         bytes = encode_png(screen_bytes(picture, stops), picture.width, picture.height, {});
     else
-        throw Error(ErrorKind::usage, "out is " + file.string() + "; allowed is a name that ends in .exr or .png", "out");
+        throw Error(ErrorKind::usage, "out is " + file.string() + "; allowed is a name that ends in .exr or .png",
+                    "out");
     write_whole_file(file, bytes);
 }
 

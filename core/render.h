@@ -21,10 +21,9 @@ struct RenderedPicture {
     std::vector<std::string> warnings;
 };
 
-/// Validates, reads, bakes where needed and renders on `threads` threads (0: one per core). Reports the phases of bake()
-/// and "render".
-/// Throws Error: usage naming the field, bad_input naming the file (also when a given file is not the one that the result
-/// was baked from), out_of_resources, cancelled.
+/// Validates, reads, bakes where needed and renders on `threads` threads (0: one per core). Reports the phases of
+/// bake() and "render". Throws Error: usage naming the field, bad_input naming the file (also when a given file is not
+/// the one that the result was baked from), out_of_resources, cancelled.
 RenderedPicture render(const RenderRequest& request, int threads, BakeProgress& progress);
 
 /// Stops that bring the brighter tenth of the pixels that are not black to a bright but unclipped tone (output/tone.h);

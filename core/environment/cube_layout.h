@@ -9,8 +9,8 @@
 //                                                                                     [+Z]
 //                                                                                     [-Z]
 //
-// The crosses are the cube's surface unfolded: neighbours in the picture are neighbours on the cube. For that reason the
-// face -Z of a vertical cross adjoins -Y and is turned by 180 degrees. Everything here is thread-safe.
+// The crosses are the cube's surface unfolded: neighbours in the picture are neighbours on the cube. For that reason
+// the face -Z of a vertical cross adjoins -Y and is turned by 180 degrees. Everything here is thread-safe.
 #pragma once
 
 #include <array>

@@ -28,8 +28,9 @@ enum class EnvironmentShape {
 };
 
 /// Linear, scene-referred RGB radiance. pixels[row * width + column]; for a cube that index is cube_texel_index. A
-/// texel's direction is that of the lat-long convention or of the cube, followed by the rotation. Convention and rotation
-/// are not applied to the pixels, and a cube stays a cube, so nothing is resampled. Exposure and tint are applied.
+/// texel's direction is that of the lat-long convention or of the cube, followed by the rotation. Convention and
+/// rotation are not applied to the pixels, and a cube stays a cube, so nothing is resampled. Exposure and tint are
+/// applied.
 struct EnvironmentMap {
     EnvironmentShape shape = EnvironmentShape::latlong;
     int width = 0, height = 0;
@@ -37,7 +38,7 @@ struct EnvironmentMap {
     LatLong latlong = LatLong::gltf;                                   ///< not used for a cube
     Matrix3 rotation{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};  ///< rows of the active matrix
 
-    std::string source_format;              ///< "hdr", "openexr", ... as OpenImageIO names it
+    std::string source_format;                              ///< "hdr", "openexr", ... as OpenImageIO names it
     EnvironmentLayout layout = EnvironmentLayout::latlong;  ///< that was read; never automatic
     std::string primaries = "unspecified";  ///< colour space of the input, kept and named, never converted
     bool low_dynamic_range = false;         ///< 8 or 16 bit integer input, sRGB decoded
@@ -54,12 +55,13 @@ Matrix3 rotation_matrix(const std::array<double, 3>& rotation_deg);
 
 /// The orthogonal matrix from the map's own frame to the world.
 /// A lat-long map's own frame is its polar frame (latlong.h): the matrix is the convention, then the rotation. Its
-/// determinant is +1 for `filament` and -1 for the others, which differ by a mirror image. A cube's own frame is that of
-/// cube_map.h: the matrix is the rotation.
+/// determinant is +1 for `filament` and -1 for the others, which differ by a mirror image. A cube's own frame is that
+/// of cube_map.h: the matrix is the rotation.
 Matrix3 map_to_world(const EnvironmentMap& map);
 
-/// A point of the map in pixels: x in [0, width], y in [0, height]; texel (column, row) has its centre at (column + 0.5,
-/// row + 0.5). In a cube y runs through the faces: y = k width belongs to face k, and y = 6 width to the last face.
+/// A point of the map in pixels: x in [0, width], y in [0, height]; texel (column, row) has its centre at (column +
+/// 0.5, row + 0.5). In a cube y runs through the faces: y = k width belongs to face k, and y = 6 width to the last
+/// face.
 struct MapPoint {
     double x = 0, y = 0;
 };
@@ -82,8 +84,8 @@ struct TexelSolidAngles {
 };
 TexelSolidAngles texel_solid_angles(const EnvironmentMap& map);
 
-/// The place of a texel for messages: "pixel (x, y)", for a cube "pixel (x, y) of face -Z", counted from the face's upper
-/// left corner.
+/// The place of a texel for messages: "pixel (x, y)", for a cube "pixel (x, y) of face -Z", counted from the face's
+/// upper left corner.
 std::string place_of_texel(const EnvironmentMap& map, std::size_t index);
 
 }  // namespace hairbake

@@ -102,8 +102,8 @@ public:
     /// Kernels of the lights of one block, in single precision. Finite for the direction (0, 0, 0) as well.
     virtual void evaluate(const LightDirections& lights, const FiberView& view, KernelBlock& kernels) const = 0;
 
-    /// What irradiance maps need; null for a model that has no maps yet. Such a model is not refused by the render modes
-    /// brute, reference and directional.
+    /// What irradiance maps need; null for a model that has no maps yet. Such a model is not refused by the render
+    /// modes brute, reference and directional.
     virtual const ZonalKernels* zonal_kernels() const { return nullptr; }
 };
 

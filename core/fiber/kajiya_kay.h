@@ -16,8 +16,8 @@ double kajiya_kay_diffuse(const Vec3d& tangent, const Vec3d& to_light);
 
 /// max(0, sin_l sin_e - cos_l cos_e)^p = max(0, -cos(theta_l + theta_e))^p for unit vectors away from the hair; in [0,
 /// 1], 1 in the mirror direction. p >= 0; p = 0 is the indicator of a positive cosine.
-/// The minus sign (CS184) is right where both directions point away. Equations 6 to 8 of Xing 2012 lack the clamp; it is
-/// applied here (docs/math.md, "The Kajiya-Kay kernels").
+/// The minus sign (CS184) is right where both directions point away. Equations 6 to 8 of Xing 2012 lack the clamp; it
+/// is applied here (docs/math.md, "The Kajiya-Kay kernels").
 double kajiya_kay_specular(const Vec3d& tangent, const Vec3d& to_light, const Vec3d& to_eye, double exponent);
 
 /// The specular kernel from angles to the tangent: max(0, cos(pi - theta_light - theta_view))^p (Xing 2012, section 3).

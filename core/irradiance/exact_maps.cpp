@@ -68,8 +68,7 @@ ExactMaps bake_exact_maps(const LightSet& lights, const IrradianceSettings& sett
         if (added.size() > 0) added_sums = sum_kernels(added, tangents, table, progress);
         for (std::size_t i = 0; i < texels; ++i)
             store_texel(sums.data() + i * table.rows(), face * texels + i, baked.maps);
-        baked.interpolation_bound =
-            larger_bound(baked.interpolation_bound, sums, added_sums, table.rows(), 1 + count);
+        baked.interpolation_bound = larger_bound(baked.interpolation_bound, sums, added_sums, table.rows(), 1 + count);
         progress.report((face / 2 + 1) / 3.0);
     }
     if (!bounded_here)

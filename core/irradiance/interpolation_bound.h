@@ -14,13 +14,14 @@ namespace hairbake {
 /// `radius` (radians) of t and of the light.
 ///
 /// The largest sum of such a row over the lights, over all rows and over tangents that cover half the sphere with that
-/// radius, is therefore an upper bound, per channel, of |(1 - f) S_m(t) + f S_m+1(t) - S(t, theta')| for the texels that
-/// the lights gather.
+/// radius, is therefore an upper bound, per channel, of |(1 - f) S_m(t) + f S_m+1(t) - S(t, theta')| for the texels
+/// that the lights gather.
 ///
 /// Method: the specular kernel depends on theta + theta' alone (ZonalKernels), so one light's error depends on theta +
 /// theta'_m and f. Its absolute value is maximised over f and over angles within `radius` and one table step. 2 % are
 /// added for the finite sampling. Absolute values add up, so the bound is loose for smooth environments and close for a
-/// sun. The opposite tangents swap theta for pi - theta, which turns row m into row M - 1 - m: half the sphere is enough.
+/// sun. The opposite tangents swap theta for pi - theta, which turns row m into row M - 1 - m: half the sphere is
+/// enough.
 void add_interpolation_rows(KernelTable& table, const ZonalKernels& kernels, int specular_maps, double radius);
 
 /// Largest angle between a direction and the nearest texel centre of a cube: half a diagonal at a face's centre.

@@ -61,9 +61,7 @@ void make_histogram(const LightSet& lights, const Vec3d& tangent, const AngleGri
 
 }  // namespace
 
-AngleGrid::AngleGrid(int intervals) : intervals_(intervals) {
-    HAIRBAKE_ASSERT(intervals >= 2 && intervals % 2 == 0);
-}
+AngleGrid::AngleGrid(int intervals) : intervals_(intervals) { HAIRBAKE_ASSERT(intervals >= 2 && intervals % 2 == 0); }
 
 AngleGrid AngleGrid::for_sharpness(double sharpness) {
     // The error of linear interpolation is step^2 / 8 * largest second derivative; the step is about pi / 1024 at a

@@ -17,8 +17,8 @@ enum class Channel {
     tangent         ///< the strand's tangent, each component in [-1, 1]
 };
 inline constexpr std::array channel_names{
-    EnumName{Channel::beauty, "beauty"},     EnumName{Channel::transmittance, "transmittance"},
-    EnumName{Channel::diffuse, "diffuse"},   EnumName{Channel::specular, "specular"},
+    EnumName{Channel::beauty, "beauty"},   EnumName{Channel::transmittance, "transmittance"},
+    EnumName{Channel::diffuse, "diffuse"}, EnumName{Channel::specular, "specular"},
     EnumName{Channel::tangent, "tangent"},
 };
 constexpr std::string_view name_of(Channel channel) { return name_in(channel_names, channel); }

@@ -25,7 +25,8 @@ const float* kernel_of(const KernelBlock& kernels, const FiberLobe& lobe, std::s
 
 }  // namespace
 
-LightSum::LightSum(const LightSet& lights, const FiberModel& model) : model_(model), lobes_(model.lobes()), count_(lights.size()) {
+LightSum::LightSum(const LightSet& lights, const FiberModel& model)
+    : model_(model), lobes_(model.lobes()), count_(lights.size()) {
     HAIRBAKE_ASSERT(!lobes_.empty() && lobes_.size() <= most_lobes);
     const std::size_t padded = (count_ + light_block - 1) / light_block * light_block;
     x_ = lights.x;

@@ -19,8 +19,8 @@ using LobeSums = std::array<Vec3d, most_lobes>;
 ///
 /// Sums are in single precision, with an error of about 1e-5 of the sum. The lights are those of the exact maps: texels
 /// gathered at flux centroids (light_set.h), which agree with the sum over every pixel to 0.05 % of the largest value:
-/// one picture point needs thousands of lights instead of millions of pixels. Refers to the model, which must outlive it.
-/// Immutable after construction: thread-safe.
+/// one picture point needs thousands of lights instead of millions of pixels. Refers to the model, which must outlive
+/// it. Immutable after construction: thread-safe.
 class LightSum {
 public:
     LightSum(const LightSet& lights, const FiberModel& model);

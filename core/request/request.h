@@ -22,8 +22,8 @@ struct BakeRequest {
     std::optional<std::string> receiver;     ///< path of a mesh that hair shadows; needs hair
     StrandSettings strand;
     TransmittanceSettings transmittance;
-    EnvironmentSettings environment_settings;  ///< part of the JSON block "irradiance"
-    FiberSettings fiber;                       ///< part of the JSON block "irradiance"
+    EnvironmentSettings environment_settings;
+    FiberSettings fiber;
     IrradianceSettings irradiance;
     std::vector<std::string> outputs{"npy", "exr", "hair"};  ///< of output_formats(); each at most once
 

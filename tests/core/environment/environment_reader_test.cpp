@@ -253,9 +253,6 @@ TEST(EnvironmentReader, WrongSettingsAreUsageErrorsNamingTheField) {
         return "";
     };
     EnvironmentSettings settings;
-    settings.layout = "cross";
-    EXPECT_EQ(field_of(settings), "irradiance.layout");
-    settings = {};
     settings.tint = {1, -1, 1};
     EXPECT_EQ(field_of(settings), "irradiance.tint");
     settings = {};

@@ -41,11 +41,11 @@ TEST(KajiyaKay, VectorsAndAnglesAgreeAndTheMirrorDirectionGivesOne) {
 }
 
 TEST(KajiyaKay, ExponentZeroIsTheIndicatorOfAPositiveCosine) {
-    EXPECT_EQ(specular_lobe(1e-9, 0), 1);
-    EXPECT_EQ(specular_lobe(0, 0), 0);
-    EXPECT_EQ(specular_lobe(-0.5, 0), 0);
-    EXPECT_EQ(specular_lobe(0, 1), 0);
-    EXPECT_EQ(specular_lobe(0.25, 0.5), 0.5);
+    EXPECT_EQ(clamped_power(1e-9, 0), 1);
+    EXPECT_EQ(clamped_power(0, 0), 0);
+    EXPECT_EQ(clamped_power(-0.5, 0), 0);
+    EXPECT_EQ(clamped_power(0, 1), 0);
+    EXPECT_EQ(clamped_power(0.25, 0.5), 0.5);
 }
 
 TEST(KajiyaKay, DiffuseZonalCoefficientsMatchQuadrature) {

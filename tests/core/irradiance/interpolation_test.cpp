@@ -17,7 +17,7 @@ using testing::random_direction;
 
 IrradianceMaps bake(const EnvironmentMap& map, const IrradianceSettings& settings) {
     Progress progress;
-    return bake_irradiance(map, settings, progress);
+    return bake_irradiance(map, settings, {}, progress);
 }
 
 Vec3d eye_at(const Vec3d& t, double theta) {

@@ -16,7 +16,7 @@ using testing::sample_texels;
 
 IrradianceMaps bake(const EnvironmentMap& map, const IrradianceSettings& settings) {
     Progress progress;
-    return bake_irradiance(map, settings, progress);
+    return bake_irradiance(map, settings, {}, progress);
 }
 
 IrradianceSettings small(IrradianceMethod method) {

@@ -219,7 +219,7 @@ TEST(Presets, PaperIsThePublishedSetting) {
     EXPECT_EQ(request.transmittance.directions, 100);
     EXPECT_EQ(request.transmittance.direction_set, DirectionSet::random);
     EXPECT_EQ(request.irradiance.specular_maps, 9);
-    EXPECT_EQ(request.irradiance.exponent, 64);
+    EXPECT_EQ(request.fiber.kajiya_kay.exponent, 64);
     EXPECT_EQ(request.irradiance.face_size, 16);
     EXPECT_EQ(request.irradiance.method, IrradianceMethod::sh);
     EXPECT_EQ(request.irradiance.sh_bands_diffuse, 3);   // 9 coefficients
