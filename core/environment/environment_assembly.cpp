@@ -68,7 +68,8 @@ void check_openexr_cube(const std::filesystem::path& file, EnvironmentLayout req
     if (requested != EnvironmentLayout::vertical_strip)
         fail(file,
              "the file says that it is OpenEXR's cube map (envmap attribute), whose faces are oriented in another way; "
-             "allowed are lat-long maps and cubes in the orientation of OpenGL. irradiance.layout = vertical_strip "
+             "allowed are lat-long maps and cubes in the orientation of OpenGL. environment_settings.layout = "
+             "vertical_strip "
              "takes its faces as such");
     image.warnings.push_back(
         "the EXR envmap attribute says cube map, whose faces OpenEXR orients in another way: they were taken in the "

@@ -13,8 +13,8 @@ namespace {
 
 void check_settings(const EnvironmentSettings& settings) {
     const auto refuse = [](const std::string& field, const std::string& found, const std::string& allowed) {
-        throw Error(ErrorKind::usage, "irradiance." + field + " is " + found + "; allowed is " + allowed,
-                    "irradiance." + field);
+        throw Error(ErrorKind::usage, "environment_settings." + field + " is " + found + "; allowed is " + allowed,
+                    "environment_settings." + field);
     };
     for (const double angle : settings.rotation_deg)
         if (!std::isfinite(angle)) refuse("rotation_deg", std::to_string(angle), "finite");
@@ -30,8 +30,8 @@ void check_settings(const EnvironmentSettings& settings) {
     while (is_finite(map.pixels[i])) ++i;
     std::ostringstream text;
     text << file << ": exposure and tint take the radiance at " << place_of_texel(map, i)
-         << " beyond the range of single precision (3.4e38); lower irradiance.exposure_stops";
-    throw Error(ErrorKind::usage, text.str(), "irradiance.exposure_stops");
+         << " beyond the range of single precision (3.4e38); lower environment_settings.exposure_stops";
+    throw Error(ErrorKind::usage, text.str(), "environment_settings.exposure_stops");
 }
 
 // Applies exposure and tint. It runs after the repair, so that an error of the repair names the file's own values.
@@ -77,7 +77,7 @@ EnvironmentMap read_environment(const std::filesystem::path& path, const Environ
     map.latlong = settings.latlong;
     map.rotation = rotation_matrix(settings.rotation_deg);
     if (map.shape == EnvironmentShape::cube && settings.latlong != LatLong::gltf)
-        map.warnings.push_back("irradiance.latlong is " + std::string(name_of(settings.latlong)) +
+        map.warnings.push_back("environment_settings.latlong is " + std::string(name_of(settings.latlong)) +
                                ", but the environment is a cube map: it was not used");
 
     map.repairs = repair_radiance(map, settings.invalid_radiance, path.string(), progress);

@@ -65,8 +65,9 @@ void refuse(const EnvironmentMap& map, std::size_t index, const std::string& whe
              : channel == 1 ? "green"
                             : "blue")
          << " radiance at " << place_of_texel(map, index) << " is " << pixel[channel]
-         << "; allowed is finite and not negative. irradiance.invalid_radiance = clamp repairs and counts such pixels";
-    throw Error(ErrorKind::bad_input, text.str(), "irradiance.invalid_radiance");
+         << "; allowed is finite and not negative. environment_settings.invalid_radiance = clamp repairs and counts "
+            "such pixels";
+    throw Error(ErrorKind::bad_input, text.str(), "environment_settings.invalid_radiance");
 }
 
 void add(RadianceRepairs& sum, const RadianceRepairs& row) {

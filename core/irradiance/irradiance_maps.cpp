@@ -70,8 +70,8 @@ void measure(const CubeTexels& texels, const std::vector<double>& solid_angles, 
         if (!is_finite(texels[i]))
             throw Error(ErrorKind::bad_input,
                         "the environment is so bright that a map leaves the range of single precision (3.4e38); lower "
-                        "irradiance.exposure_stops or irradiance.lights",
-                        "irradiance.exposure_stops");
+                        "environment_settings.exposure_stops or irradiance.lights",
+                        "environment_settings.exposure_stops");
         for (int channel = 0; channel < 3; ++channel) {
             statistics.minimum[channel] = std::min(statistics.minimum[channel], texels[i][channel]);
             statistics.maximum[channel] = std::max(statistics.maximum[channel], texels[i][channel]);

@@ -48,7 +48,7 @@ public:
 
 private:
     struct Span {
-        int begin, end;  // nodes outside carry zero
+        int begin, end;  // nodes outside are zero
     };
     AngleGrid grid_;
     std::vector<Span> spans_;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/base/assert.h"
 #include "core/base/spherical_harmonics.h"
 #include "core/render/fiber_lighting.h"
 
@@ -113,6 +114,7 @@ private:
 
 std::unique_ptr<FiberLighting> directional_lighting(const DirectionalTransmittance& transmittance,
                                                     const LightSum& lights) {
+    HAIRBAKE_ASSERT(transmittance.sh.empty() != transmittance.bent_cone.empty() && transmittance.sh_bands <= 4);
     if (transmittance.sh_bands > 0) return std::make_unique<ShLighting>(transmittance, lights);
     return std::make_unique<ConeLighting>(transmittance, lights);
 }

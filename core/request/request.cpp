@@ -85,8 +85,7 @@ void check_environment(const EnvironmentSettings& settings) {
 /// Of the chosen model alone.
 void check_fiber(const FiberSettings& settings) {
     for (const FiberNumber& number : fiber_numbers)
-        if (number.model == settings.model)
-            check_range(path_of(number), number.of(settings), number.low, number.high);
+        if (number.model == settings.model) check_range(path_of(number), number.of(settings), number.low, number.high);
 }
 
 void check_light(const std::string& field, const DirectionalLight& light) {

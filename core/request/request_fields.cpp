@@ -247,8 +247,9 @@ std::vector<Field> fiber_fields() {
         moved(choice<FiberModelKind>("fiber.model", std::move(names), AT(fiber.model)), "irradiance.model")};
     for (const FiberNumber& entry : fiber_numbers) {
         const std::string path = path_of(entry);
-        fields.push_back({path, [entry](const BakeRequest& r) { return Json(entry.of(r.fiber)); },
-                          [entry, path](BakeRequest& r, const Json& v) { entry.member(r.fiber) = read_number(path, v); }});
+        fields.push_back(
+            {path, [entry](const BakeRequest& r) { return Json(entry.of(r.fiber)); },
+             [entry, path](BakeRequest& r, const Json& v) { entry.member(r.fiber) = read_number(path, v); }});
         if (path == "fiber.kajiya_kay.exponent") fields.back().first_path = "irradiance.exponent";
     }
     return fields;

@@ -202,7 +202,7 @@ TEST(CubeLayout, AConventionOfLatLongsIsNotUsedForACubeAndSaysSo) {
     const EnvironmentMap map = read(folder / "a.exr", "auto", LatLong::openexr);
     expect_labelled(map);
     ASSERT_EQ(map.warnings.size(), 1u);
-    EXPECT_NE(map.warnings[0].find("irradiance.latlong is openexr"), std::string::npos);
+    EXPECT_NE(map.warnings[0].find("environment_settings.latlong is openexr"), std::string::npos);
 }
 
 TEST(CubeLayout, ShapesAndLayoutsThatDoNotFitAreRefusedWithWhatIsKnown) {

@@ -34,7 +34,7 @@ TEST(CubeMap, TexelSolidAnglesSumToTheSphere) {
 }
 
 TEST(CubeMap, FacesAreOrientedAsTheDesignSays) {
-    // (a, b) = (0.5, 0.25) put into the design's table by hand; 1e-15 is rounding of the normalisation.
+    // (a, b) = (0.5, 0.25) put into the table of cube_map.h by hand; 1e-15 is rounding of the normalisation.
     const Vec3d expected[] = {{1, -0.25, -0.5}, {-1, -0.25, 0.5}, {0.5, 1, 0.25},
                               {0.5, -1, -0.25}, {0.5, -0.25, 1},  {-0.5, -0.25, -1}};
     for (int face = 0; face < cube_faces; ++face)

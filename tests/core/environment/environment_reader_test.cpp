@@ -254,10 +254,10 @@ TEST(EnvironmentReader, WrongSettingsAreUsageErrorsNamingTheField) {
     };
     EnvironmentSettings settings;
     settings.tint = {1, -1, 1};
-    EXPECT_EQ(field_of(settings), "irradiance.tint");
+    EXPECT_EQ(field_of(settings), "environment_settings.tint");
     settings = {};
     settings.exposure_stops = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_EQ(field_of(settings), "irradiance.exposure_stops");
+    EXPECT_EQ(field_of(settings), "environment_settings.exposure_stops");
 }
 
 TEST(EnvironmentReader, ACancelledReadStops) {

@@ -84,7 +84,7 @@ TEST(IrradianceMapsStage, CoarseSettingsAreWarnedOf) {
     const EnvironmentMap map = generate_sky(Sky::sunny, 128, 1);
     IrradianceSettings settings;
     EXPECT_TRUE(bake_irradiance(map, settings, {}, progress).warnings.empty());
-    settings.specular_maps = 5;  // error up to the whole sun (spec, section 2)
+    settings.specular_maps = 5;  // error up to the whole sun
     settings.face_size = 4;      // 29 degrees a texel against 8.4 of the lobe
     EXPECT_EQ(bake_irradiance(map, settings, {}, progress).warnings.size(), 2u);
 }

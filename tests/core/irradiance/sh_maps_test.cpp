@@ -85,7 +85,7 @@ TEST(ShMaps, NegativeValuesAreClampedAndTheirMassReported) {
                 ASSERT_EQ(clamped.specular[m][i][c], std::max(0.0f, value));
             }
         }
-        EXPECT_GT(mass, 0.01);  // eight bands of cos^64 ring (spec, section 4: down to -0.35)
+        EXPECT_GT(mass, 0.01);  // eight bands of cos^64 ring (docs/math.md, "Spherical harmonics": down to -0.35)
         EXPECT_NEAR(clamped.specular_statistics[m].clamped_negative_mass, mass, 1e-6 * mass);
         EXPECT_NEAR(raw.specular_statistics[m].clamped_negative_mass, mass, 1e-6 * mass);
         EXPECT_GE(clamped.specular_statistics[m].minimum.x, 0);

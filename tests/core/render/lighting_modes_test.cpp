@@ -252,7 +252,7 @@ TEST(BentConeTransmittance, HasTheMeanAWhereverTheConeCanHoldIt) {
             EXPECT_NEAR(mean, a, 0.003) << half_angle;
         }
     }
-    // Spec, section 10: half of the sphere open has |b| = 1/2, half-angle 90 degrees, and T is 1 inside.
+    // Half of the sphere open has |b| = 1/2, half-angle 90 degrees, and T is 1 inside.
     const BentCone half(0.5, axis * 0.25);
     EXPECT_NEAR(half.at(axis), 1, 1e-12);
     EXPECT_NEAR(half.at(-axis), 0, 1e-12);

@@ -63,7 +63,7 @@ TEST(RequestJson, FirstPlacesAreTakenWithAWarningEach) {
     BakeRequest request;
     const auto warnings =
         merge_json(request, R"({"irradiance": {"exponent": 5, "tint": [1, 2, 3], "face_size": 8}})", "old.json");
-    EXPECT_EQ(request.irradiance.exponent, 5);
+    EXPECT_EQ(request.fiber.kajiya_kay.exponent, 5);
     EXPECT_EQ(request.environment_settings.tint[2], 3);
     EXPECT_EQ(warnings, (std::vector<std::string>{
                             "old.json: irradiance.exponent is deprecated: the field is now fiber.kajiya_kay.exponent",
