@@ -88,7 +88,7 @@ TEST(KajiyaKay, ReversingTheViewFlipsOddBands) {
 }
 
 TEST(KajiyaKay, BandsHoldTheEnergyOfTheKernel) {
-    // Parseval: sum lambda_l^2 (2l + 1) / (4 pi) = integral of k^2. Spec, section 4: 24 bands hold 99.99 % at p = 64;
+    // Parseval: sum lambda_l^2 (2l + 1) / (4 pi) = integral of k^2. docs/math.md, "Spherical harmonics": 24 bands hold 99.99 % at p = 64;
     // the sine's six coefficients of l = 0, 2 hold 99.756 %.
     const auto energy = [](const std::vector<double>& lambda) {
         double sum = 0;
