@@ -24,32 +24,41 @@ namespace {
 constexpr int reported_bands = 8;
 constexpr int bound_resolution = 32;  // of the lights that the bound of the method sh sums over
 
-void take(TangentMaps baked, IrradianceMaps& maps) {
+/// The result with these texels.
+IrradianceMaps result_of(TangentMaps baked) {
+    IrradianceMaps maps;
+    maps.face_size = baked.face_size;
     maps.diffuse = std::move(baked.diffuse);
     maps.specular = std::move(baked.specular);
+    maps.specular_statistics.resize(maps.specular.size());
+    return maps;
 }
 
-void bake_exact(const EnvironmentMap& environment, const IrradianceSettings& settings, const FiberModel& model,
-                Progress& progress, IrradianceMaps& maps) {
+/// The maps of the environment alone by the method exact.
+IrradianceMaps bake_exact(const EnvironmentMap& environment, const IrradianceSettings& settings,
+                          const FiberModel& model, Progress& progress) {
     const LightSet lights = make_light_set(environment, light_resolution(model.sharpness()), progress);
     progress.report(0.2);
     ProgressPart summing = progress.part(0.2, 0.8);
     ExactMaps exact = bake_exact_maps(lights, settings, model, summing);
-    take(std::move(exact.maps), maps);
+    IrradianceMaps maps = result_of(std::move(exact.maps));
     maps.interpolation_bound = exact.interpolation_bound;
     maps.environment_sh_bands = reported_bands;
     maps.environment_sh =
         rotate_sh(project_sh(environment, reported_bands, progress), reported_bands, map_to_world(environment));
+    return maps;
 }
 
-void bake_sh(const EnvironmentMap& environment, const IrradianceSettings& settings, const ZonalKernels& kernels,
-             Progress& progress, IrradianceMaps& maps) {
+/// The maps of the environment alone by the method sh.
+IrradianceMaps bake_sh(const EnvironmentMap& environment, const IrradianceSettings& settings,
+                       const ZonalKernels& kernels, Progress& progress) {
     const LightSet lights = make_light_set(environment, bound_resolution, progress);
     progress.report(0.2);
-    maps.interpolation_bound = interpolation_bound(with_directional_lights(lights, settings.lights), kernels,
-                                                   settings.specular_maps, progress);
+    const Vec3d bound = interpolation_bound(with_directional_lights(lights, settings.lights), kernels,
+                                            settings.specular_maps, progress);
     ShMaps sh = bake_sh_maps(environment, settings, kernels, reported_bands, progress);
-    take(std::move(sh.maps), maps);
+    IrradianceMaps maps = result_of(std::move(sh.maps));
+    maps.interpolation_bound = bound;
     maps.diffuse_statistics.clamped_negative_mass = sh.negative_mass_diffuse;
     for (std::size_t m = 0; m < maps.specular.size(); ++m)
         maps.specular_statistics[m].clamped_negative_mass = sh.negative_mass_specular[m];
@@ -59,11 +68,13 @@ void bake_sh(const EnvironmentMap& environment, const IrradianceSettings& settin
     maps.predicted_error_specular = sh.predicted_error_specular;
     maps.environment_sh = std::move(sh.environment);
     maps.environment_sh_bands = sh.environment_bands;
+    return maps;
 }
 
-/// Fills mean, minimum and maximum.
-void measure(const CubeTexels& texels, const std::vector<double>& solid_angles, MapStatistics& statistics) {
-    statistics.minimum = statistics.maximum = texels.front();
+/// Mean, minimum and maximum; `clamped_negative_mass` is passed on.
+MapStatistics measured(const CubeTexels& texels, const std::vector<double>& solid_angles,
+                       double clamped_negative_mass) {
+    MapStatistics statistics{{}, texels.front(), texels.front(), clamped_negative_mass};
     Vec3d sum;
     for (std::size_t i = 0; i < texels.size(); ++i) {
         sum += Vec3d(texels[i]) * solid_angles[i % solid_angles.size()];
@@ -78,18 +89,21 @@ void measure(const CubeTexels& texels, const std::vector<double>& solid_angles, 
         }
     }
     statistics.mean = sum / (4 * pi);
+    return statistics;
 }
 
 double largest(const Vec3f& v) { return std::max({v.x, v.y, v.z}); }
 
+/// Fills the statistics of the texels as they are now, and the relative bound.
 void measure_all(IrradianceMaps& maps) {
     const std::vector<double> solid_angles = cube_texel_solid_angles(maps.face_size);
-    measure(maps.diffuse, solid_angles, maps.diffuse_statistics);
-    double peak = largest(maps.diffuse_statistics.maximum);
-    for (std::size_t m = 0; m < maps.specular.size(); ++m) {
-        measure(maps.specular[m], solid_angles, maps.specular_statistics[m]);
-        peak = std::max(peak, largest(maps.specular_statistics[m].maximum));
-    }
+    const auto measure = [&](const CubeTexels& texels, MapStatistics& statistics) {
+        statistics = measured(texels, solid_angles, statistics.clamped_negative_mass);
+        return largest(statistics.maximum);
+    };
+    double peak = measure(maps.diffuse, maps.diffuse_statistics);
+    for (std::size_t m = 0; m < maps.specular.size(); ++m)
+        peak = std::max(peak, measure(maps.specular[m], maps.specular_statistics[m]));
     const Vec3d& bound = maps.interpolation_bound;
     maps.interpolation_bound_relative = peak > 0 ? std::max({bound.x, bound.y, bound.z}) / peak : 0;
 }
@@ -158,14 +172,10 @@ IrradianceMaps bake_irradiance(const EnvironmentMap& environment, const Irradian
     validate(settings);
     const std::unique_ptr<const FiberModel> model = make_fiber_model(fiber);
     const ZonalKernels& kernels = zonal_kernels_for_maps(*model, fiber);
-    IrradianceMaps maps;
-    maps.face_size = settings.face_size;
+    IrradianceMaps maps = settings.method == IrradianceMethod::exact
+                              ? bake_exact(environment, settings, *model, progress)
+                              : bake_sh(environment, settings, kernels, progress);
     maps.exponent = fiber.kajiya_kay.exponent;
-    maps.specular_statistics.resize(settings.specular_maps);
-    if (settings.method == IrradianceMethod::exact)
-        bake_exact(environment, settings, *model, progress, maps);
-    else
-        bake_sh(environment, settings, kernels, progress, maps);
     add_directional_lights(settings.lights, kernels, progress, maps);
     measure_all(maps);
     maps.warnings = warnings_of(maps, settings, kernels.half_width());
