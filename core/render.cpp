@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <new>
 #include <numbers>
 #include <optional>
@@ -11,6 +12,7 @@
 #include "core/base/naming_file.h"
 #include "core/base/parallel.h"
 #include "core/environment/light_set.h"
+#include "core/fiber/fiber_model.h"
 #include "core/hair/strand_geometry.h"
 #include "core/hair/tangents.h"
 #include "core/irradiance/added_lights.h"
@@ -19,39 +21,20 @@
 #include "core/output/picture_encoding.h"
 #include "core/output/tone.h"
 #include "core/render/camera_json.h"
+#include "core/render/fiber_lighting.h"
+#include "core/render/renderer.h"
 #include "core/render_input.h"
 
 namespace hairbake {
 namespace {
 
-[[noreturn]] void refuse(const std::string& field, const std::string& found, const std::string& allowed) {
-    throw Error(ErrorKind::usage, field + " is " + found + "; allowed is " + allowed, field);
-}
-
-void expect(double value, double low, double high, const char* field) {
-    if (!(value >= low && value <= high))
-        refuse(field, std::to_string(value), std::to_string(low) + " to " + std::to_string(high));
-}
-
-void validate(const RenderRequest& request) {
-    expect(request.frame.width, 1, 16384, "width");
-    expect(request.frame.height, 1, 16384, "height");
-    expect(request.frame.samples, 1, 65536, "samples");
-    expect(request.light_samples, 1, 65536, "light_samples");
-    expect(request.look.albedo, 0, 1, "albedo");
-    expect(request.look.specular, 0, 10, "specular");
-    for (const double channel : request.look.color) expect(channel, 0, 1, "color");
-    for (const double channel : request.look.mesh_albedo) expect(channel, 0, 1, "mesh_albedo");
-}
-
 Vec3d vector_of(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
-/// The sum over lights, where the mode or the mesh needs it.
-std::optional<LightSum> make_lights(const RenderInput& input, const Progress& progress) {
+/// The lights, where the mode or the mesh needs them. Refers to the model.
+std::optional<LightSum> make_lights(const RenderInput& input, const FiberModel& model, const Progress& progress) {
     if (!input.environment) return {};
-    const IrradianceSettings& settings = input.bake.irradiance;
-    LightSet lights = make_light_set(*input.environment, light_resolution(settings.exponent), progress);
-    return LightSum(with_directional_lights(std::move(lights), settings.lights), settings.exponent);
+    LightSet lights = make_light_set(*input.environment, light_resolution(model.sharpness()), progress);
+    return LightSum(with_directional_lights(std::move(lights), input.bake.irradiance.lights), model);
 }
 
 DirectionalTransmittance directional_of(const RenderRequest& request, const RenderInput& input) {
@@ -95,69 +78,88 @@ std::string text(const Value& value) {
 
 std::string text(const Vec3d& v) { return text(v.x) + " " + text(v.y) + " " + text(v.z); }
 
-std::vector<std::pair<std::string, std::string>> describe(const RenderRequest& request, const RenderInput& input,
+std::vector<std::pair<std::string, std::string>> describe(const RenderRequest& request, const FiberSettings& fiber,
                                                           const Camera& camera, const Vec3d& kd) {
-    constexpr const char* modes[] = {"baked", "brute", "reference", "directional"};
-    constexpr const char* channels[] = {"beauty", "transmittance", "diffuse", "specular", "tangent"};
-    return {{"hairbake:mode", modes[static_cast<int>(request.mode)]},
-            {"hairbake:channel", channels[static_cast<int>(request.frame.channel)]},
-            {"hairbake:samples", text(request.frame.samples)},
-            {"hairbake:lightSamples", text(request.light_samples)},
-            {"hairbake:seed", std::to_string(request.frame.seed)},
-            {"hairbake:kd", text(kd)},
-            {"hairbake:ks", text(request.look.specular)},
-            {"hairbake:exponent", text(input.bake.irradiance.exponent)},
-            {"hairbake:eye", text(camera.eye)},
-            {"hairbake:backward", text(camera.backward)},
-            {"hairbake:up", text(camera.up)},
-            {"hairbake:tangentOfHalfField", text(camera.tangent)}};
+    std::vector<std::pair<std::string, std::string>> facts{
+        {"hairbake:mode", std::string(name_of(request.mode))},
+        {"hairbake:channel", std::string(name_of(request.frame.channel))},
+        {"hairbake:samples", text(request.frame.samples)},
+        {"hairbake:lightSamples", text(request.light_samples)},
+        {"hairbake:seed", std::to_string(request.frame.seed)},
+        {"hairbake:kd", text(kd)},
+        {"hairbake:ks", text(request.look.specular)}};
+    for (const FiberNumber& number : fiber_numbers)
+        if (number.model == fiber.model)
+            facts.emplace_back("hairbake:" + std::string(number.name), text(number.of(fiber)));
+    facts.insert(facts.end(), {{"hairbake:eye", text(camera.eye)},
+                               {"hairbake:backward", text(camera.backward)},
+                               {"hairbake:up", text(camera.up)},
+                               {"hairbake:tangentOfHalfField", text(camera.tangent)}});
+    return facts;
 }
 
-/// Calls body(lighting) with the lighting of the mode.
-template <class Body>
-void with_lighting(const RenderRequest& request, const RenderInput& input, const StrandScene& scene,
-                   const std::optional<LightSum>& lights, Progress& progress, const Body& body) {
+/// The lighting of the mode, with all that it refers to.
+struct ModeLighting {
     VertexTransmittance average;
-    if (request.transmittance) average.average = input.average;
-    switch (request.mode) {
-        case ShadingMode::baked:
-            if (!shows_light(request)) return body(*average_lighting(average));
-            return body(*baked_lighting(average, *input.maps));
-        case ShadingMode::brute:
-            return body(*brute_lighting(average, *lights));
-        case ShadingMode::reference:
-            return body(*reference_lighting(VertexRays(scene, progress), average, *lights, request.light_samples));
-        case ShadingMode::directional: {
-            const DirectionalTransmittance transmittance = directional_of(request, input);
-            return body(*directional_lighting(transmittance, *lights));
+    DirectionalTransmittance directional;
+    std::unique_ptr<FiberLighting> lighting;
+
+    ModeLighting(const RenderRequest& request, const RenderInput& input, const StrandScene& scene,
+                 const std::optional<LightSum>& lights, Progress& progress) {
+        if (request.transmittance) average.average = input.average;
+        switch (request.mode) {
+            case ShadingMode::baked:
+                lighting = shows_light(request) ? baked_lighting(average, *input.maps) : average_lighting(average);
+                break;
+            case ShadingMode::brute:
+                lighting = brute_lighting(average, *lights);
+                break;
+            case ShadingMode::reference:
+                lighting = reference_lighting(VertexRays(scene, progress), average, *lights, request.light_samples);
+                break;
+            case ShadingMode::directional:
+                directional = directional_of(request, input);
+                lighting = directional_lighting(directional, *lights);
+                break;
         }
     }
-}
+    ModeLighting(const ModeLighting&) = delete;
+    ModeLighting& operator=(const ModeLighting&) = delete;
+};
 
 RenderedPicture render_input(const RenderRequest& request, const RenderInput& input, BakeProgress& progress) {
+    const std::unique_ptr<const FiberModel> model = make_fiber_model(input.bake.fiber);
     const StrandGeometry strands =
         naming_file(*input.bake.hair, [&] { return make_strand_geometry(input.hair, input.bake.strand); });
     const std::vector<Vec3f> tangents = vertex_tangents(input.hair);
     progress.enter("reference");
     const StrandScene scene(strands, progress, input.occluder ? &*input.occluder : nullptr);
     const FirstHits hits(scene, input.mesh ? &*input.mesh : nullptr);
-    const std::optional<LightSum> lights = make_lights(input, progress);
+    const std::optional<LightSum> lights = make_lights(input, *model, progress);
     const Camera camera = camera_of(request, strands, input.mesh);
     const Vec3d kd = vector_of(request.look.color) * (request.look.albedo / (std::numbers::pi * std::numbers::pi));
+    const ModeLighting mode(request, input, scene, lights, progress);
+    const RenderScene shown{.hits = hits,
+                            .tangents = tangents,
+                            .strands = strands,
+                            .lighting = *mode.lighting,
+                            .lobes = model->lobes(),
+                            .kd = kd,
+                            .ks = Vec3d(request.look.specular),
+                            .mesh_lights = lights ? &*lights : nullptr,
+                            .mesh_albedo = vector_of(request.look.mesh_albedo),
+                            .background = request.background && input.environment ? &*input.environment : nullptr};
 
-    RenderedPicture picture{
-        request.frame.width, request.frame.height, request.frame.channel, {}, describe(request, input, camera, kd), 0,
-        input.warnings};
-    with_lighting(request, input, scene, lights, progress, [&](const FiberLighting& lighting) {
-        RenderScene shown{hits, tangents, strands, lighting, kd, Vec3d(request.look.specular), nullptr, {}, nullptr};
-        shown.mesh_lights = lights ? &*lights : nullptr;
-        shown.mesh_albedo = vector_of(request.look.mesh_albedo);
-        if (request.background && input.environment) shown.background = &*input.environment;
-        const auto start = std::chrono::steady_clock::now();
-        progress.enter("render");
-        picture.pixels = render_frame(shown, camera, request.frame, progress);
-        picture.render_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    });
+    RenderedPicture picture{.width = request.frame.width,
+                            .height = request.frame.height,
+                            .channel = request.frame.channel,
+                            .pixels = {},
+                            .metadata = describe(request, input.bake.fiber, camera, kd),
+                            .warnings = input.warnings};
+    const auto start = std::chrono::steady_clock::now();
+    progress.enter("render");
+    picture.pixels = render_frame(shown, camera, request.frame, progress);
+    picture.render_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return picture;
 }
 
@@ -195,7 +197,7 @@ RenderedPicture render(const RenderRequest& request, int threads, BakeProgress& 
 }
 
 double automatic_exposure(const RenderedPicture& picture) {
-    if (picture.channel == Channel::transmittance || picture.channel == Channel::tangent) return 0;
+    if (!is_light(picture.channel)) return 0;
     std::vector<float> luminances;
     for (const Vec3f& pixel : picture.pixels)
         if (const float value = luminance(pixel); value > 0) luminances.push_back(value);
@@ -210,7 +212,8 @@ void write_picture(const RenderedPicture& picture, double stops, const std::file
     else if (ending == ".png")
         bytes = encode_png(screen_bytes(picture, stops), picture.width, picture.height, {});
     else
-        refuse("out", file.string(), "a name that ends in .exr or .png");
+        throw Error(ErrorKind::usage, "out is " + file.string() + "; allowed is a name that ends in .exr or .png",
+                    "out");
     write_whole_file(file, bytes);
 }
 

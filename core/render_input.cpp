@@ -16,12 +16,7 @@ namespace hairbake {
 namespace fs = std::filesystem;
 namespace {
 
-bool needs_environment(const RenderRequest& request) {
-    const bool around = request.frame.channel == Channel::beauty && (request.background || request.mesh);
-    return request.mode != ShadingMode::baked || around;
-}
-
-/// The file, after a look at whether it is the one that was baked.
+/// The file, once its digest is that of the file that was baked.
 std::string checked(const std::string& file, const std::string& digest, const std::string& what) {
     const std::string found = what == "environment" ? digest_of_environment(file) : digest_of_file(file);
     if (found != digest)
@@ -30,7 +25,7 @@ std::string checked(const std::string& file, const std::string& digest, const st
     return file;
 }
 
-/// Where the hair of a result is: as given, or its own copy, or where it was baked from.
+/// The hair file of a result: the given one, or its own copy, or the one that it was baked from.
 std::string hair_of(const RenderRequest& request, const StoredResult& stored) {
     if (request.bake.hair) {
         const std::string digest = digest_of_file(*request.bake.hair);
@@ -121,11 +116,6 @@ RenderInput from_bake(const RenderRequest& request, BakeProgress& progress) {
 }
 
 }  // namespace
-
-bool shows_light(const RenderRequest& request) {
-    const Channel channel = request.frame.channel;
-    return request.mode != ShadingMode::baked || (channel != Channel::transmittance && channel != Channel::tangent);
-}
 
 RenderInput read_render_input(const RenderRequest& request, BakeProgress& progress) {
     RenderInput input = request.result ? from_folder(request) : from_bake(request, progress);

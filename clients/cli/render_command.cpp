@@ -22,30 +22,12 @@ struct RenderOptions {
     int threads = 0;
 };
 
-template <class Value>
-using Names = std::vector<std::pair<std::string, Value>>;
-
-const Names<ShadingMode>& mode_names() {
-    static const Names<ShadingMode> names{{"baked", ShadingMode::baked},
-                                          {"brute", ShadingMode::brute},
-                                          {"reference", ShadingMode::reference},
-                                          {"directional", ShadingMode::directional}};
-    return names;
-}
-
-const Names<Channel>& channel_names() {
-    static const Names<Channel> names{{"beauty", Channel::beauty},
-                                      {"transmittance", Channel::transmittance},
-                                      {"diffuse", Channel::diffuse},
-                                      {"specular", Channel::specular},
-                                      {"tangent", Channel::tangent}};
-    return names;
-}
-
-const Names<Directional>& directional_names() {
-    static const Names<Directional> names{
-        {"auto", Directional::automatic}, {"sh", Directional::sh}, {"bent-cone", Directional::bent_cone}};
-    return names;
+/// Of an enum's table, for CLI11.
+template <class Enum, std::size_t count>
+CLI::CheckedTransformer by_name(const std::array<EnumName<Enum>, count>& table) {
+    std::vector<std::pair<std::string, Enum>> names;
+    for (const EnumName<Enum>& entry : table) names.emplace_back(entry.name, entry.value);
+    return CLI::CheckedTransformer(names);
 }
 
 void parse_size(const std::string& text, FrameSettings& frame) {
@@ -129,13 +111,13 @@ void add_shading_options(CLI::App& command, RenderOptions& options) {
     RenderRequest& request = options.request;
     command
         .add_option("--mode", request.mode, "baked (the maps), brute (every light), reference (traced), directional")
-        ->transform(CLI::CheckedTransformer(mode_names()))
+        ->transform(by_name(shading_mode_names))
         ->type_name("MODE");
     command.add_option("--directional", request.directional, "auto, sh or bent-cone")
-        ->transform(CLI::CheckedTransformer(directional_names()))
+        ->transform(by_name(directional_names))
         ->type_name("KIND");
     command.add_option("--channel", request.frame.channel, "beauty, transmittance, diffuse, specular or tangent")
-        ->transform(CLI::CheckedTransformer(channel_names()))
+        ->transform(by_name(channel_names))
         ->type_name("CHANNEL");
     command.add_flag("--no-transmittance", options.no_transmittance, "A = 1 (modes baked and brute)");
     command.add_flag("--no-background", options.no_background, "black behind the hair");

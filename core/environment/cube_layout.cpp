@@ -1,13 +1,17 @@
 #include "core/environment/cube_layout.h"
 
+#include "core/base/assert.h"
+
 namespace hairbake {
 namespace {
 
+using enum EnvironmentLayout;
+
 constexpr std::array<CubeLayout, 4> layouts{{
-    {"horizontal_cross", 4, 3, {{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}}}},
-    {"vertical_cross", 3, 4, {{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {1, 3, true}}}},
-    {"horizontal_strip", 6, 1, {{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}, {5, 0}}}},
-    {"vertical_strip", 1, 6, {{{0, 0}, {0, 1}, {0, 2}, {0, 3}, {0, 4}, {0, 5}}}},
+    {horizontal_cross, 4, 3, {{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}}}},
+    {vertical_cross, 3, 4, {{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {1, 3, true}}}},
+    {horizontal_strip, 6, 1, {{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}, {5, 0}}}},
+    {vertical_strip, 1, 6, {{{0, 0}, {0, 1}, {0, 2}, {0, 3}, {0, 4}, {0, 5}}}},
 }};
 
 bool has_shape(const CubeLayout& layout, int width, int height) {
@@ -17,26 +21,24 @@ bool has_shape(const CubeLayout& layout, int width, int height) {
 
 }  // namespace
 
-std::span<const CubeLayout> cube_layouts() { return layouts; }
-
-const CubeLayout* find_cube_layout(std::string_view name) {
+const CubeLayout* find_cube_layout(EnvironmentLayout wanted) {
     for (const CubeLayout& layout : layouts)
-        if (layout.name == name) return &layout;
+        if (layout.layout == wanted) return &layout;
     return nullptr;
 }
 
-std::string_view layout_of_shape(int width, int height) {
-    if (height > 0 && width % 2 == 0 && width / 2 == height) return "latlong";
+std::optional<EnvironmentLayout> layout_of_shape(int width, int height) {
+    if (height > 0 && width % 2 == 0 && width / 2 == height) return latlong;
     for (const CubeLayout& layout : layouts)
-        if (has_shape(layout, width, height)) return layout.name;
-    return {};
+        if (has_shape(layout, width, height)) return layout.layout;
+    return std::nullopt;
 }
 
 std::string known_shapes() {
     std::string text = "2:1 (latlong)";
     for (const CubeLayout& layout : layouts)
         text += ", " + std::to_string(layout.columns) + ":" + std::to_string(layout.rows) + " (" +
-                std::string(layout.name) + ")";
+                std::string(name_of(layout.layout)) + ")";
     return text + ", or six square pictures as a folder or a pattern with {face} (faces)";
 }
 
@@ -51,6 +53,7 @@ PicturePixel pixel_of_texel(const CubeLayout& layout, int size, int face, int ro
 
 CubeTexels take_cube(const CubeLayout& layout, int size, std::span<const Vec3f> pixels) {
     const std::size_t width = std::size_t(layout.columns) * size;
+    HAIRBAKE_ASSERT(pixels.size() == width * layout.rows * size);
     CubeTexels texels;
     texels.reserve(std::size_t(cube_faces) * size * size);
     for (int face = 0; face < cube_faces; ++face)

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/base/assert.h"
+
 namespace hairbake {
 namespace {
 
@@ -13,8 +15,8 @@ int texel_coordinate(int size, double a) {
     return std::clamp(static_cast<int>(std::floor((a + 1) / 2 * size)), 0, size - 1);
 }
 
-// The texel across an edge: (row, column) is outside the face in exactly one of the two. A step of a thousandth of a
-// texel beyond the edge lands in the neighbour and moves less than that along the edge.
+// The texel across an edge: either the row or the column is outside the face, not both. A point a thousandth of a texel
+// beyond the edge is in the neighbouring face, and is displaced along the edge by less than that.
 std::size_t neighbour(int size, int face, int row, int column) {
     const double limit = 1 + 2e-3 / size;
     return cube_texel_of(size, cube_vector({face, std::clamp(centre(size, column), -limit, limit),
@@ -58,6 +60,7 @@ Vec3d cube_vector(CubePoint p) {
 Vec3d cube_direction(CubePoint point) { return normalized(cube_vector(point)); }
 
 CubePoint cube_point(const Vec3d& d) {
+    HAIRBAKE_ASSERT(dot(d, d) > 0);
     const Vec3d m{std::abs(d.x), std::abs(d.y), std::abs(d.z)};
     if (m.x >= m.y && m.x >= m.z)
         return d.x > 0 ? CubePoint{0, -d.z / m.x, -d.y / m.x} : CubePoint{1, d.z / m.x, -d.y / m.x};
@@ -75,6 +78,7 @@ std::size_t cube_texel_of(int size, const Vec3d& direction) {
 }
 
 std::size_t cube_antipode(int size, std::size_t texel) {
+    HAIRBAKE_ASSERT(texel < std::size_t(cube_faces) * size * size);
     const int column = static_cast<int>(texel % size), row = static_cast<int>(texel / size % size);
     const int face = static_cast<int>(texel / size / size);
     // -(+X)(a, b) = (-1, b, a) = (-X)(a, -b), likewise Z; -(+Y)(a, b) = (-a, -1, -b) = (-Y)(-a, b).

@@ -1,8 +1,9 @@
 // Cube maps: faces, texels, exact solid angles and look-up.
 //
-// Faces in the order +X -X +Y -Y +Z -Z, orientation of OpenGL, Direct3D and KTX. Unfolded around +Z, as stored (right
-// is each face's +a, down its +b; the letters are the world axis that a and b grow along). The graphics interfaces'
-// cube maps are left-handed: in our right-handed frame this is the view from outside.
+// The faces are in the order +X -X +Y -Y +Z -Z, with the orientation of OpenGL, Direct3D and KTX. The drawing shows them
+// unfolded around +Z, as stored: +a of each face is to the right, +b is down, and the letters name the world axes along
+// which a and b grow. Cube maps of the graphics interfaces are left-handed: in this right-handed frame the drawing is the
+// view from outside.
 //
 //                 +----------+
 //                 |    +Y    |
@@ -50,8 +51,8 @@ inline std::size_t cube_texel_index(int size, int face, int row, int column) {
 /// The table above: the direction of a point before normalising, on the cube of edge 2. Linear in a and b.
 Vec3d cube_vector(CubePoint point);
 
-/// Unit direction of a point, and the point of a direction (any length but 0; on an edge the axis named first
-/// in x, y, z wins).
+/// Unit direction of a point, and the point of a direction of any length but 0. On an edge the first axis of x, y, z
+/// decides the face.
 Vec3d cube_direction(CubePoint point);
 CubePoint cube_point(const Vec3d& direction);
 
@@ -61,15 +62,15 @@ Vec3d cube_texel_direction(int size, int face, int row, int column);
 /// Index (cube_texel_index) of the texel that a direction falls into.
 std::size_t cube_texel_of(int size, const Vec3d& direction);
 
-/// Index of the texel in the opposite direction: the cubes here are symmetric about the centre.
+/// Index of the texel in the opposite direction; texel centres are symmetric about the cube's centre.
 std::size_t cube_antipode(int size, std::size_t texel);
 
 /// Exact solid angle of each texel of one face, [size * size], row by row, the same for all faces:
 /// F(x1,y1) - F(x0,y1) - F(x1,y0) + F(x0,y0), F = atan2(x y, sqrt(x^2 + y^2 + 1)). Six faces sum to 4 pi.
 std::vector<double> cube_texel_solid_angles(int size);
 
-/// Bilinear look-up as a GPU's seamless cube filtering does it: across an edge the neighbouring face's texels are
-/// taken, at a corner the missing fourth texel is the mean of the three that meet there.
+/// Bilinear look-up as by a GPU's seamless cube filtering: across an edge it uses the neighbouring face's texels; at a
+/// corner the missing fourth texel is the mean of the three that meet there.
 Vec3d sample_cube(const CubeTexels& texels, int size, const Vec3d& direction);
 
 }  // namespace hairbake

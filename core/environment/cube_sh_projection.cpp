@@ -11,11 +11,11 @@
 namespace hairbake {
 namespace {
 
-constexpr std::size_t pieces = 48;  // of the sum; sums of bands^2 are kept for each
+constexpr std::size_t pieces = 48;  // of the sum; each piece has its own bands^2 sums
 constexpr int octants = 8;
 
-// Values at the eight images of a direction, index 1 where x is negated + 2 for y + 4 for z, and then their sums with
-// the signs of a function that is odd in x (1), y (2), z (4).
+// Values at the eight images of a direction; the index adds 1 where x is negated, 2 for y and 4 for z. sum_with_signs()
+// turns them into their sums with the signs of a function that is odd in x (1), y (2), z (4).
 using Images = std::array<Vec3d, octants>;
 
 void sum_with_signs(Images& v) {
@@ -28,7 +28,7 @@ void sum_with_signs(Images& v) {
         }
 }
 
-// Which of x, y and z each harmonic is odd in: Y_lm is P_l|m|(z) times cos(m phi) for m >= 0, sin(|m| phi) for m < 0.
+// The axes in which each harmonic is odd: Y_lm is P_l|m|(z) times cos(m phi) for m >= 0, sin(|m| phi) for m < 0.
 std::vector<std::uint8_t> parities(int bands) {
     std::vector<std::uint8_t> parity;
     for (int l = 0; l < bands; ++l)

@@ -5,8 +5,8 @@
 
 namespace hairbake {
 
-/// One of the request's `lights`, added to the maps analytically with the exact kernel. It stands in the world frame:
-/// rotation, exposure and tint of the environment do not act on it.
+/// One of the request's `lights`; it is added to the maps with the exact kernel. It is in the world frame: rotation,
+/// exposure and tint of the environment do not change it.
 struct DirectionalLight {
     Vec3d direction;   ///< towards the light, any length but 0
     Vec3d irradiance;  ///< RGB, of a surface that faces the light; >= 0

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/base/assert.h"
 #include "core/base/parallel.h"
 #include "core/environment/cube_layout.h"
 #include "core/environment/image_file.h"
@@ -40,7 +41,7 @@ void linearize(std::vector<Vec3f>& pixels, const Progress& progress) {
     });
 }
 
-// What the file says beside its pixels; of several files, each warning once.
+// Takes over the facts of a file beside its pixels. A warning of several files appears once.
 void take_facts(ImageFile& image, EnvironmentMap& map, const Progress& progress) {
     map.source_format = image.format;
     map.primaries = image.primaries;
@@ -61,21 +62,22 @@ void become_cube(EnvironmentMap& map, int size) {
     map.height = cube_faces * size;
 }
 
-// EXR has a layout of its own whose faces are oriented otherwise.
-void check_openexr_cube(const std::filesystem::path& file, const std::string& requested, ImageFile& image) {
+// OpenEXR's own cube layout orients the faces differently.
+void check_openexr_cube(const std::filesystem::path& file, EnvironmentLayout requested, ImageFile& image) {
     if (!image.openexr_cube) return;
-    if (requested != "vertical_strip")
+    if (requested != EnvironmentLayout::vertical_strip)
         fail(file,
              "the file says that it is OpenEXR's cube map (envmap attribute), whose faces are oriented in another way; "
-             "allowed are lat-long maps and cubes in the orientation of OpenGL. irradiance.layout = vertical_strip "
+             "allowed are lat-long maps and cubes in the orientation of OpenGL. environment_settings.layout = "
+             "vertical_strip "
              "takes its faces as such");
     image.warnings.push_back(
         "the EXR envmap attribute says cube map, whose faces OpenEXR orients in another way: they were taken in the "
         "orientation of OpenGL, as vertical_strip asks");
 }
 
-EnvironmentMap read_one_picture(const std::filesystem::path& file, const std::string& requested, Progress& progress) {
-    if (requested == "faces")
+EnvironmentMap read_one_picture(const std::filesystem::path& file, EnvironmentLayout requested, Progress& progress) {
+    if (requested == EnvironmentLayout::faces)
         fail(file, "this is one picture; layout faces takes a folder with six, or a pattern with {face}");
     const auto check = [&](int width, int height) { return fault_of_size(requested, width, height); };
     ProgressPart reading = progress.part(0, 0.9);
@@ -83,7 +85,7 @@ EnvironmentMap read_one_picture(const std::filesystem::path& file, const std::st
     check_openexr_cube(file, requested, image);
     EnvironmentMap map;
     take_facts(image, map, progress);
-    map.layout = layout_of_shape(image.width, image.height);
+    map.layout = layout_of_shape(image.width, image.height).value();  // `check` let no other shape pass
     const CubeLayout* layout = find_cube_layout(map.layout);
     if (!layout) {
         map.width = image.width;
@@ -96,11 +98,12 @@ EnvironmentMap read_one_picture(const std::filesystem::path& file, const std::st
     return map;
 }
 
-EnvironmentMap read_faces(const EnvironmentFiles& files, const std::string& requested, Progress& progress) {
-    if (requested != "auto" && requested != "faces")
-        fail(files.files[0].parent_path(), "these are six pictures; layout " + requested + " takes one");
+EnvironmentMap read_faces(const EnvironmentFiles& files, EnvironmentLayout requested, Progress& progress) {
+    if (requested != EnvironmentLayout::automatic && requested != EnvironmentLayout::faces)
+        fail(files.files[0].parent_path(),
+             "these are six pictures; layout " + std::string(name_of(requested)) + " takes one");
     EnvironmentMap map;
-    map.layout = "faces";
+    map.layout = EnvironmentLayout::faces;
     int size = 0;
     for (int face = 0; face < cube_faces; ++face) {
         const std::filesystem::path& file = files.files[face];
@@ -125,14 +128,15 @@ EnvironmentMap read_faces(const EnvironmentFiles& files, const std::string& requ
 
 }  // namespace
 
-std::string fault_of_size(const std::string& requested, int width, int height) {
-    const std::string_view found = layout_of_shape(width, height);
+std::string fault_of_size(EnvironmentLayout requested, int width, int height) {
+    HAIRBAKE_ASSERT(requested != EnvironmentLayout::faces);
+    const std::optional<EnvironmentLayout> found = layout_of_shape(width, height);
     const std::string size = size_text(width, height) + " pixels";
-    if (found.empty()) return "the size is " + size + ", the shape of no layout; known are " + known_shapes();
-    if (requested != "auto" && requested != found)
-        return "the size is " + size + ", the shape of layout " + std::string(found) + " and not of " + requested +
-               "; known are " + known_shapes();
-    const CubeLayout* layout = find_cube_layout(found);
+    if (!found) return "the size is " + size + ", the shape of no layout; known are " + known_shapes();
+    if (requested != EnvironmentLayout::automatic && requested != *found)
+        return "the size is " + size + ", the shape of layout " + std::string(name_of(*found)) + " and not of " +
+               std::string(name_of(requested)) + "; known are " + known_shapes();
+    const CubeLayout* layout = find_cube_layout(*found);
     if (!layout && width > widest_latlong)
         return "the declared size is " + size + "; allowed is up to " + size_text(widest_latlong, widest_latlong / 2);
     if (layout && (width / layout->columns > largest_face || std::int64_t(width) * height > most_pixels))
@@ -142,7 +146,7 @@ std::string fault_of_size(const std::string& requested, int width, int height) {
     return {};
 }
 
-EnvironmentMap assemble_environment(const EnvironmentFiles& files, const std::string& requested, Progress& progress) {
+EnvironmentMap assemble_environment(const EnvironmentFiles& files, EnvironmentLayout requested, Progress& progress) {
     return files.faces() ? read_faces(files, requested, progress)
                          : read_one_picture(files.files[0], requested, progress);
 }

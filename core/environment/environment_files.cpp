@@ -38,7 +38,7 @@ std::optional<FaceName> face_of(const std::string& word) {
     return std::nullopt;
 }
 
-// Files that differ in the face's name alone.
+// Files whose names differ only in the face.
 struct Set {
     std::string before, after;  // of the file's name
     std::size_t names;

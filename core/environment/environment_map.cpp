@@ -33,18 +33,6 @@ Matrix3 convention_matrix(LatLong convention) {
 
 }  // namespace
 
-std::string_view name_of(LatLong convention) {
-    switch (convention) {
-        case LatLong::gltf:
-            return "gltf";
-        case LatLong::filament:
-            return "filament";
-        case LatLong::openexr:
-            return "openexr";
-    }
-    return "unknown";
-}
-
 Matrix3 rotation_matrix(const std::array<double, 3>& rotation_deg) {
     std::array<double, 3> c{}, s{};
     for (int axis = 0; axis < 3; ++axis) {

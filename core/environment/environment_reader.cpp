@@ -4,7 +4,6 @@
 #include <sstream>
 
 #include "core/base/parallel.h"
-#include "core/environment/cube_layout.h"
 #include "core/environment/environment_assembly.h"
 #include "core/environment/environment_files.h"
 #include "core/environment/radiance_repair.h"
@@ -14,13 +13,9 @@ namespace {
 
 void check_settings(const EnvironmentSettings& settings) {
     const auto refuse = [](const std::string& field, const std::string& found, const std::string& allowed) {
-        throw Error(ErrorKind::usage, "irradiance." + field + " is " + found + "; allowed is " + allowed,
-                    "irradiance." + field);
+        throw Error(ErrorKind::usage, "environment_settings." + field + " is " + found + "; allowed is " + allowed,
+                    "environment_settings." + field);
     };
-    if (settings.layout != "auto" && settings.layout != "latlong" && settings.layout != "faces" &&
-        !find_cube_layout(settings.layout))
-        refuse("layout", '"' + settings.layout + '"',
-               "auto, latlong, faces, horizontal_cross, vertical_cross, horizontal_strip or vertical_strip");
     for (const double angle : settings.rotation_deg)
         if (!std::isfinite(angle)) refuse("rotation_deg", std::to_string(angle), "finite");
     if (!(std::abs(settings.exposure_stops) <= 64))
@@ -35,11 +30,11 @@ void check_settings(const EnvironmentSettings& settings) {
     while (is_finite(map.pixels[i])) ++i;
     std::ostringstream text;
     text << file << ": exposure and tint take the radiance at " << place_of_texel(map, i)
-         << " beyond the range of single precision (3.4e38); lower irradiance.exposure_stops";
-    throw Error(ErrorKind::usage, text.str(), "irradiance.exposure_stops");
+         << " beyond the range of single precision (3.4e38); lower environment_settings.exposure_stops";
+    throw Error(ErrorKind::usage, text.str(), "environment_settings.exposure_stops");
 }
 
-// After the repair, so that what is named in an error is what the file holds.
+// Applies exposure and tint. It runs after the repair, so that an error of the repair names the file's own values.
 void expose(EnvironmentMap& map, const EnvironmentSettings& settings, const std::string& file,
             const Progress& progress) {
     const double gain = std::exp2(settings.exposure_stops);
@@ -57,7 +52,7 @@ void expose(EnvironmentMap& map, const EnvironmentSettings& settings, const std:
         if (row) refuse_overflow(map, file);
 }
 
-/// What the repair made of the pixels, each kind with its count; empty where it had nothing to do.
+/// Counts of the repaired pixels by kind; empty where all were valid.
 std::string repair_warning(const RadianceRepairs& done) {
     std::ostringstream text;
     const auto add = [&](std::uint64_t pixels, const char* radiance, const char* became) {
@@ -82,10 +77,10 @@ EnvironmentMap read_environment(const std::filesystem::path& path, const Environ
     map.latlong = settings.latlong;
     map.rotation = rotation_matrix(settings.rotation_deg);
     if (map.shape == EnvironmentShape::cube && settings.latlong != LatLong::gltf)
-        map.warnings.push_back("irradiance.latlong is " + std::string(name_of(settings.latlong)) +
+        map.warnings.push_back("environment_settings.latlong is " + std::string(name_of(settings.latlong)) +
                                ", but the environment is a cube map: it was not used");
 
-    repair_radiance(map, settings.invalid_radiance, path.string(), progress);
+    map.repairs = repair_radiance(map, settings.invalid_radiance, path.string(), progress);
     if (std::string warning = repair_warning(map.repairs); !warning.empty()) map.warnings.push_back(std::move(warning));
     expose(map, settings, path.string(), progress);
     progress.report(1);

@@ -8,12 +8,16 @@
 
 namespace hairbake {
 
-/// Reads HDR, EXR, TIFF, PFM or PNG (8 and 16 bit integers are sRGB decoded and warned of). Alpha and further channels
-/// are dropped with a warning, one channel is taken as grey. `path` is a file, a folder or a pattern
-/// (environment_files.h); the pixels are a lat-long map or a cube in one of the layouts of cube_layout.h or as six
-/// files. The layout `auto` tells which by the shape; map.layout says what was taken. A cube stays a cube. The declared
-/// size is checked before memory is taken (environment_assembly.h). Throws Error(bad_input) with the file's name, where
-/// in it, what was found and what is allowed.
+/// Reads HDR, EXR, TIFF, PFM or PNG pictures. Integers of 8 and 16 bits are decoded as sRGB, with a warning. Alpha and
+/// further channels are dropped with a warning; one channel is grey.
+///   path      a file, a folder or a pattern (environment_files.h)
+///   settings  layout, convention, rotation, exposure, tint, and how invalid radiance is treated
+///   progress  reports 0 to 1
+/// The pixels are a lat-long map, or a cube in one of the layouts of cube_layout.h or as six files. The layout
+/// automatic is found by the picture's shape; map.layout is the layout that was read. A cube stays a cube. The declared
+/// size is checked before memory is taken (environment_assembly.h). Throws Error(usage) naming the field out of range,
+/// Error(bad_input) with the file's name, the place in it, what was found and what is allowed, Error(out_of_resources),
+/// Error(cancelled).
 EnvironmentMap read_environment(const std::filesystem::path& path, const EnvironmentSettings& settings,
                                 Progress& progress);
 

@@ -17,7 +17,7 @@ namespace {
 constexpr int most_channels = 64;
 constexpr std::int64_t pixels_per_piece = 1 << 20;
 constexpr std::uintmax_t most_bytes_of_tiles = std::uintmax_t(512) << 20;  // in one row of them, decoded
-// The most decoded bytes that one byte of a PNG, TIFF or EXR can stand for, whatever the picture. Deflate reaches
+// The most decoded bytes that one byte of a PNG, TIFF or EXR can represent, for any picture. Deflate reaches
 // 1032:1 (a match of 258 bytes in 2 bits). On top of it EXR's DWA keeps 2 + 2 bytes of an 8 x 8 block of floats (256
 // bytes) and 2 bytes of a run of 128: 64 * 1032:1. PNG's 1-bit palettes are decoded to 4 bytes: 32 * 1032:1, TIFF's
 // to 3. EXR's PXR24 reaches 4/3 * 1032:1, PIZ 410:1, RLE 64:1, B44A 32:3; TIFF's Zstandard 32768:1 (128 KiB in 4
@@ -34,7 +34,7 @@ struct Source {
     }
 };
 
-// The format by the file's first bytes. Only these decoders are ever offered a foreign file.
+// The format by the file's first bytes. No other decoder of OpenImageIO ever reads a user's file.
 std::string sniff(const Source& source) {
     std::array<unsigned char, 8> head{};
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(source.file.c_str(), "rb"), std::fclose);
@@ -96,7 +96,7 @@ void check_placement(const Source& source, const OIIO::ImageSpec& spec) {
                     ") is not the display window; allowed is an image that fills it");
 }
 
-// Which channel gives red, green and blue.
+// The channels of red, green and blue.
 std::array<int, 3> choose_channels(const OIIO::ImageSpec& spec, ImageFile& image) {
     const auto is = [](std::string name, char letter) {
         name = name.substr(name.rfind('.') == std::string::npos ? 0 : name.rfind('.') + 1);
@@ -154,7 +154,7 @@ void add_notes(const OIIO::ImageSpec& spec, OIIO::ImageInput& input, ImageFile& 
         image.warnings.push_back(
             "the EXR envmap attribute says lat-long: OpenEXR's convention would be latlong = openexr");
     if (input.seek_subimage(1, 0)) image.warnings.push_back("the file has several images: the first was taken");
-    (void)input.geterror();  // that there is no second image is no error
+    (void)input.geterror();  // a missing second image is no error
     if (!input.seek_subimage(0, 0)) throw Error(ErrorKind::bad_input, "the first image cannot be read again");
 }
 
@@ -166,8 +166,7 @@ bool read_rows(const Source& source, const OIIO::ImageSpec& spec, int begin, int
                                         rows.data());
 }
 
-// The pixels are not touched before there is something to put there: a size that is only declared takes addresses, but
-// no memory.
+// Pixels are written piece by piece: a declared size without data reserves addresses, but no memory.
 void read_pixels(const Source& source, const OIIO::ImageSpec& spec, Progress& progress, ImageFile& image) {
     const std::array<int, 3> channels = choose_channels(spec, image);
     const int unit = spec.tile_height > 0 ? spec.tile_height : 16;

@@ -1,4 +1,4 @@
-// Reads the pixels of an image file with OpenImageIO, distrusting it.
+// Reads the pixels of an image file with OpenImageIO. The file is not trusted: sizes are checked before memory is taken.
 #pragma once
 
 #include <filesystem>
@@ -18,20 +18,23 @@ struct ImageFile {
     std::string format;         ///< "hdr", "openexr", "tiff", "pnm" (PFM), "png"
     std::string primaries;      ///< from the file's chromaticities, "unspecified" without
     bool integer = false;       ///< the file holds integers
-    bool openexr_cube = false;  ///< EXR's envmap attribute says cube: OpenEXR's own orientation of the faces
+    bool openexr_cube = false;  ///< EXR's envmap attribute says cube: the faces have OpenEXR's own orientation
     std::vector<std::string> warnings;
 };
 
-/// Judges a declared size before any memory is taken: returns what is wrong with it ("the size is ...; allowed is
-/// ..."), empty if nothing.
+/// Checks a declared size before any memory is taken: returns its fault ("the size is ...; allowed is ..."), empty where
+/// there is none.
 using SizeCheck = std::function<std::string(int width, int height)>;
 
-/// Reads an image in pieces of about a million pixels, between which `progress` is told and may cancel. The format is
-/// told from the file's first bytes, not its name; the declared size is given to `check` and compared with the most
-/// that a file of this length can hold before any memory is taken, and tiles too large to decode a row of them are
-/// refused. `check` bounds the memory. Channels R, G, B are found by name (in any layer), otherwise the first three are
-/// taken; one channel is grey. Throws Error(bad_input) with file, place, what was found and what is allowed;
-/// Error(out_of_resources); Error(cancelled).
+/// Reads an image.
+///   file      its format is recognised by its first bytes, not by its name
+///   check     refuses declared sizes, and thereby bounds the memory
+///   progress  reports 0 to 1; a cancellation is noticed after about a million pixels
+/// Before any memory is taken, the declared size is also compared with the largest that a file of this length can hold,
+/// and tiles are refused when a row of them is too large to decode. Channels R, G, B are found by name (in any layer),
+/// otherwise they are the first three; one channel is grey.
+/// Throws Error(bad_input) with the file, the place, what was found and what is allowed; Error(out_of_resources);
+/// Error(cancelled).
 ImageFile read_image_file(const std::filesystem::path& file, const SizeCheck& check, Progress& progress);
 
 }  // namespace hairbake

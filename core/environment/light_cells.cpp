@@ -61,7 +61,8 @@ std::vector<LightCell> gather_band(const Grid& grid, int band) {
     return cells;
 }
 
-// Distance between the furthest two points of a cell: with theta and phi both changing evenly, no path is longer.
+// Upper bound of the distance between two points of a cell: the length of a path along which theta and phi both change
+// evenly.
 double cell_diameter(const Grid& grid, int band, int cells) {
     const int top = grid.first_row(band), bottom = grid.first_row(band + 1);
     const double low = pi * top / grid.map.height, high = pi * bottom / grid.map.height;
@@ -72,8 +73,8 @@ double cell_diameter(const Grid& grid, int band, int cells) {
 
 // ---- cube ----------------------------------------------------------------------------------------------------------
 
-// First texel of each cell along an edge of a face, and the end: cells of equal angle, as a = tan(angle) makes texels
-// near a face's middle larger than those at its edge.
+// First texel of each cell along an edge of a face, and the end. Cells have equal angles, since a = tan(angle) makes
+// texels near a face's middle larger than those at its edge.
 std::vector<int> cell_borders(int size, int resolution) {
     const int cells = std::min(size, resolution);
     std::vector<int> borders;
@@ -93,8 +94,8 @@ struct CubeGrid {
     int cells() const { return static_cast<int>(borders.size()) - 1; }
 };
 
-// Adds columns [begin, end) of one row. Directions are linear in a and b before normalising (cube_vector), so three
-// sums do for the moment.
+// Adds columns [begin, end) of one row. Directions are linear in a and b before normalising (cube_vector), so two sums
+// give the moment.
 void add_run(const CubeGrid& grid, int face, int row, int begin, int end, LightCell& cell) {
     const int y = face * grid.map.width + row;
     const Vec3f* pixels = grid.map.pixels.data() + std::size_t(y) * grid.map.width;
@@ -120,8 +121,8 @@ std::vector<LightCell> gather_band(const CubeGrid& grid, int face, int band) {
     return cells;
 }
 
-// On the face a cell is a rectangle; seen from the centre no step on it is longer than the step over sqrt(1 + r^2),
-// r the distance from the face's middle.
+// On the face a cell is a rectangle. Seen from the cube's centre, a step on it is at most the step over sqrt(1 + r^2),
+// with r the distance from the face's middle.
 double cell_diameter(const CubeGrid& grid, int band, int k) {
     const auto nearest = [](double low, double high) { return low > 0 ? low : high < 0 ? high : 0; };
     const double left = grid.coordinate(grid.borders[k]), right = grid.coordinate(grid.borders[k + 1]);

@@ -1,4 +1,4 @@
-// Cells of neighbouring texels: what light_set.h makes one light of.
+// Cells of neighbouring texels; light_set.h makes one light of each.
 #pragma once
 
 #include <vector>
@@ -17,11 +17,12 @@ struct LightCell {
 
 struct LightCells {
     std::vector<std::vector<LightCell>> bands;
-    double diameter = 0;  ///< no two points of one cell are further apart (radians)
+    double diameter = 0;  ///< largest distance between two points of one cell (radians)
 };
 
-/// Cells of `map`, `resolution` along a quarter of a great circle; light_set.h tells their shapes. The sums are in
-/// double and the same for any thread count. Throws Error(cancelled).
+/// Cells of `map`, `resolution` along a quarter of a great circle; light_set.h describes their shapes. The sums are in
+/// double and the same for any thread count.
+/// Throws Error(cancelled).
 LightCells gather_latlong_cells(const EnvironmentMap& map, int resolution, const Progress& progress);
 LightCells gather_cube_cells(const EnvironmentMap& map, int resolution, const Progress& progress);
 

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "core/base/assert.h"
 #include "core/environment/light_cells.h"
 
 namespace hairbake {
@@ -14,7 +15,7 @@ void add_light(LightSet& lights, const LightCell& cell, const Matrix3& to_world)
                     "the environment has negative, infinite or NaN radiance near the direction (" +
                         std::to_string(cell.moment.x) + ", " + std::to_string(cell.moment.y) + ", " +
                         std::to_string(cell.moment.z) + ") of its own frame; repair it first (invalid_radiance: clamp)",
-                    "irradiance.invalid_radiance");
+                    "environment_settings.invalid_radiance");
     const double norm = length(cell.moment);
     if (norm == 0) return;
     const Vec3d d = transform(to_world, cell.moment / norm);
@@ -29,6 +30,7 @@ void add_light(LightSet& lights, const LightCell& cell, const Matrix3& to_world)
 }  // namespace
 
 LightSet make_light_set(const EnvironmentMap& map, int resolution, const Progress& progress) {
+    HAIRBAKE_ASSERT(resolution >= 1 && resolution <= 4096);
     const LightCells cells = map.shape == EnvironmentShape::cube ? gather_cube_cells(map, resolution, progress)
                                                                  : gather_latlong_cells(map, resolution, progress);
     LightSet lights;

@@ -65,8 +65,9 @@ void refuse(const EnvironmentMap& map, std::size_t index, const std::string& whe
              : channel == 1 ? "green"
                             : "blue")
          << " radiance at " << place_of_texel(map, index) << " is " << pixel[channel]
-         << "; allowed is finite and not negative. irradiance.invalid_radiance = clamp repairs and counts such pixels";
-    throw Error(ErrorKind::bad_input, text.str(), "irradiance.invalid_radiance");
+         << "; allowed is finite and not negative. environment_settings.invalid_radiance = clamp repairs and counts "
+            "such pixels";
+    throw Error(ErrorKind::bad_input, text.str(), "environment_settings.invalid_radiance");
 }
 
 void add(RadianceRepairs& sum, const RadianceRepairs& row) {
@@ -79,7 +80,8 @@ void add(RadianceRepairs& sum, const RadianceRepairs& row) {
 
 }  // namespace
 
-void repair_radiance(EnvironmentMap& map, InvalidRadiance policy, const std::string& where, const Progress& progress) {
+RadianceRepairs repair_radiance(EnvironmentMap& map, InvalidRadiance policy, const std::string& where,
+                                const Progress& progress) {
     std::vector<RowFacts> facts(map.height);
     parallel_for(map.height, 16, [&](std::size_t begin, std::size_t end) {
         progress.check();
@@ -97,8 +99,9 @@ void repair_radiance(EnvironmentMap& map, InvalidRadiance policy, const std::str
         for (std::size_t y = begin; y < end; ++y)
             clamp_row(map.pixels.data() + y * map.width, solid_angles, int(y), largest, facts[y].repairs);
     });
-    map.repairs = {};
-    for (const RowFacts& row : facts) add(map.repairs, row.repairs);
+    RadianceRepairs repairs;
+    for (const RowFacts& row : facts) add(repairs, row.repairs);
+    return repairs;
 }
 
 }  // namespace hairbake

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/assert.h"
 #include "core/base/parallel.h"
 #include "core/base/spherical_harmonics.h"
 #include "core/environment/cube_sh_projection.h"
@@ -112,6 +113,7 @@ RowSums sum_rows(const EnvironmentMap& map, int bands, const Progress& progress)
 }  // namespace
 
 std::vector<Vec3d> project_sh(const EnvironmentMap& map, int bands, const Progress& progress) {
+    HAIRBAKE_ASSERT(bands >= 1 && bands <= 256 && (map.shape == EnvironmentShape::cube || map.width % 2 == 0));
     if (map.shape == EnvironmentShape::cube) return project_cube_sh(map, bands, progress);
     const RowSums sums = sum_rows(map, bands, progress);
     const LatLongRows rows = latlong_rows(map.width, map.height);

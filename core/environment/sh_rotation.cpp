@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/assert.h"
 #include "core/base/gauss_legendre.h"
 #include "core/base/parallel.h"
 #include "core/base/spherical_harmonics.h"
@@ -12,6 +13,7 @@ namespace hairbake {
 using std::numbers::pi;
 
 std::vector<Vec3d> rotate_sh(std::span<const Vec3d> coefficients, int bands, const Matrix3& orthogonal) {
+    HAIRBAKE_ASSERT(bands >= 1 && coefficients.size() == std::size_t(bands) * bands);
     const ShBasis basis(bands);
     const Quadrature rule = gauss_legendre(bands);  // exact in z for degree 2 (bands - 1)
     const int azimuths = 2 * bands;                 // exact in phi for |m| + |m'| < 2 bands

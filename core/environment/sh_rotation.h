@@ -1,4 +1,4 @@
-// Turns functions that are given by spherical harmonics.
+// Rotates functions that are given by spherical harmonics.
 #pragma once
 
 #include <span>
@@ -9,9 +9,9 @@
 
 namespace hairbake {
 
-/// Coefficients of the function g with g(orthogonal * w) = f(w), f given by `coefficients` [bands * bands]: f turned
-/// (or mirrored) actively by the matrix. Exact up to rounding: f is evaluated at the nodes of a quadrature that is
-/// exact for its degree, and projected again. Cost grows as bands^4; runs on all threads.
+/// Coefficients of the function g with g(orthogonal * w) = f(w), where f has `coefficients`, [bands * bands]: f rotated
+/// or mirrored actively by the matrix. Exact up to rounding: f is evaluated at the nodes of a quadrature that is exact
+/// for its degree, and projected again. The cost grows as bands^4. Runs on all threads.
 std::vector<Vec3d> rotate_sh(std::span<const Vec3d> coefficients, int bands, const Matrix3& orthogonal);
 
 }  // namespace hairbake

@@ -1,43 +1,33 @@
 #include "core/irradiance/added_lights.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "core/base/parallel.h"
-#include "core/fiber/kajiya_kay.h"
+#include "core/irradiance/tangent_maps.h"
 
 namespace hairbake {
 
-using std::numbers::pi;
-
 namespace {
 
-// Of the angles theta'_m.
-struct Angle {
-    double sine, cosine;
-};
-
-std::vector<Angle> view_angles(std::size_t maps) {
-    std::vector<Angle> angles;
+std::vector<TangentAngle> view_angles(std::size_t maps) {
+    std::vector<TangentAngle> angles;
     for (std::size_t m = 0; m < maps; ++m) {
-        const double theta = pi * double(m) / double(maps - 1);
+        const double theta = view_angle(m, maps);
         angles.push_back({std::sin(theta), std::cos(theta)});
     }
     return angles;
 }
 
-// D, then S_0 .. S_M of all lights for one tangent.
-void sum_lights(std::span<const DirectionalLight> lights, const Vec3d& tangent, double exponent,
-                const std::vector<Angle>& views, std::vector<Vec3d>& sums) {
+/// Sums D, then S_0 .. S_M of all lights for one tangent.
+void sum_lights(std::span<const DirectionalLight> lights, const Vec3d& tangent, const ZonalKernels& kernels,
+                const std::vector<TangentAngle>& views, std::vector<Vec3d>& sums) {
     sums.assign(1 + views.size(), {});
     for (const DirectionalLight& light : lights) {
         const Vec3d direction = normalized(light.direction);
-        const double sine = kajiya_kay_diffuse(tangent, direction), cosine = dot(tangent, direction);
-        sums[0] += light.irradiance * sine;
-        for (std::size_t m = 0; m < views.size(); ++m) {
-            const double lobe = specular_lobe(sine * views[m].sine - cosine * views[m].cosine, exponent);
-            sums[1 + m] += light.irradiance * lobe;
-        }
+        const TangentAngle angle{length(cross(tangent, direction)), dot(tangent, direction)};
+        sums[0] += light.irradiance * kernels.kernel(diffuse_lobe, angle, {});
+        for (std::size_t m = 0; m < views.size(); ++m)
+            sums[1 + m] += light.irradiance * kernels.kernel(specular_lobe, angle, views[m]);
     }
 }
 
@@ -45,19 +35,20 @@ void add(Vec3f& texel, const Vec3d& light) { texel = Vec3f(Vec3d(texel) + light)
 
 }  // namespace
 
-void add_directional_lights(std::span<const DirectionalLight> lights, const Progress& progress, IrradianceMaps& maps) {
+void add_directional_lights(std::span<const DirectionalLight> lights, const ZonalKernels& kernels,
+                            const Progress& progress, IrradianceMaps& maps) {
     if (lights.empty()) return;
     const int n = maps.face_size;
     const std::size_t last = maps.specular.size() - 1;
-    const std::vector<Angle> views = view_angles(maps.specular.size());
-    // Faces +X, +Y and +Z; each texel brings its opposite.
+    const std::vector<TangentAngle> views = view_angles(maps.specular.size());
+    // Faces +X, +Y and +Z; the opposite texels follow by symmetry.
     parallel_for(std::size_t(cube_faces / 2) * n, 1, [&](std::size_t row, std::size_t) {
         progress.check();
         std::vector<Vec3d> sums;
         for (int column = 0; column < n; ++column) {
             const int face = 2 * int(row / n), face_row = int(row % n);
             const std::size_t texel = cube_texel_index(n, face, face_row, column), opposite = cube_antipode(n, texel);
-            sum_lights(lights, cube_texel_direction(n, face, face_row, column), maps.exponent, views, sums);
+            sum_lights(lights, cube_texel_direction(n, face, face_row, column), kernels, views, sums);
             add(maps.diffuse[texel], sums[0]);
             add(maps.diffuse[opposite], sums[0]);
             for (std::size_t m = 0; m <= last; ++m) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/assert.h"
 #include "core/base/parallel.h"
 
 namespace hairbake {
@@ -20,7 +21,7 @@ void store(float* p, const Flux& f) { std::copy(f.begin(), f.end(), p); }
 
 constexpr std::size_t block_size = 512;
 
-// Where lights begin .. begin + count fall on the grid, in intervals from node 0.
+// Positions of the lights begin .. begin + count on the grid, in intervals from node 0.
 void find_positions(const LightSet& lights, std::size_t begin, std::size_t count, const Vec3f& t, float half,
                     float* positions) {
     const float* x = lights.x.data() + begin;
@@ -60,10 +61,12 @@ void make_histogram(const LightSet& lights, const Vec3d& tangent, const AngleGri
 
 }  // namespace
 
-AngleGrid AngleGrid::for_exponent(double exponent) {
-    // Error of linear interpolation: step^2 / 8 * largest second derivative (p for cos^p); step about pi / 1024 at p
-    // = 64.
-    return AngleGrid(2 * static_cast<int>(std::ceil(512 * std::sqrt(std::max(1.0, exponent / 64)))));
+AngleGrid::AngleGrid(int intervals) : intervals_(intervals) { HAIRBAKE_ASSERT(intervals >= 2 && intervals % 2 == 0); }
+
+AngleGrid AngleGrid::for_sharpness(double sharpness) {
+    // The error of linear interpolation is step^2 / 8 * largest second derivative; the step is about pi / 1024 at a
+    // sharpness of 64.
+    return AngleGrid(2 * static_cast<int>(std::ceil(512 * std::sqrt(std::max(1.0, sharpness / 64)))));
 }
 
 double AngleGrid::theta(int node) const {

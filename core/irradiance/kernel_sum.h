@@ -1,4 +1,4 @@
-// Sums of kernels of the angle to a tangent over many lights: the heart of the exact method.
+// Sums of zonal kernels over many lights: the innermost loop of the exact method.
 #pragma once
 
 #include <functional>
@@ -11,17 +11,18 @@
 
 namespace hairbake {
 
-/// Nodes along theta in [0, pi] at which kernels are tabulated: even in s, where |s| = 1 - sqrt(1 - |cos theta|) and s
-/// has the sign of cos theta. That is nearly even in theta (steps differ by at most sqrt 2, finest at the poles'
-/// opposite, the equator) and costs one square root for a light, no arc cosine. Node 0 is theta = pi, the last one
-/// theta = 0.
+/// Nodes along theta in [0, pi] at which kernels are tabulated. They are evenly spaced in s, where |s| = 1 - sqrt(1 -
+/// |cos theta|) and s has the sign of cos theta. That is nearly even in theta: steps differ by at most a factor sqrt 2
+/// and are finest at the equator. The position of a light costs one square root and no arc cosine. Node 0 is theta =
+/// pi, the last node theta = 0.
 class AngleGrid {
 public:
     /// `intervals` even, >= 2.
-    explicit AngleGrid(int intervals) : intervals_(intervals) {}
+    explicit AngleGrid(int intervals);
 
-    /// Fine enough for Kajiya-Kay lobes of `exponent`: linear interpolation of the kernel errs by at most about 2e-4.
-    static AngleGrid for_exponent(double exponent);
+    /// Fine enough for lobes of this sharpness (fiber_model.h): linear interpolation of the kernel errs by at most
+    /// about 2e-4 of its peak.
+    static AngleGrid for_sharpness(double sharpness);
 
     int intervals() const { return intervals_; }
     int nodes() const { return intervals_ + 1; }
@@ -47,18 +48,18 @@ public:
 
 private:
     struct Span {
-        int begin, end;  // nodes outside carry zero
+        int begin, end;  // nodes outside are zero
     };
     AngleGrid grid_;
     std::vector<Span> spans_;
     std::vector<float> values_;  // [rows * nodes]
 };
 
-/// For each tangent t (unit) and each row K of the table: sum over lights of flux * K(angle(t, light)), with K linear
-/// between nodes. Returns [tangents * rows]. A histogram of flux over the angle is made once per tangent, so that the
-/// number of kernels hardly matters (all Kajiya-Kay maps depend on the light through its angle to the tangent alone);
-/// that is our own way to evaluate Xing 2012, section 3. Single precision inside, relative error about 1e-5. The same
-/// bytes for any thread count. Throws Error(cancelled).
+/// For each tangent t (unit) and each row K of the table: the sum over the lights of flux * K(angle(t, light)), with K
+/// linear between nodes. Returns [tangents * rows].
+/// All zonal maps depend on a light through its angle to the tangent alone. A histogram of flux over that angle is
+/// therefore made once per tangent, and the number of kernels hardly changes the time. Single precision inside,
+/// relative error about 1e-5. The same bytes for any thread count. Throws Error(cancelled).
 std::vector<Vec3f> sum_kernels(const LightSet& lights, std::span<const Vec3d> tangents, const KernelTable& table,
                                const Progress& progress);
 

@@ -9,7 +9,6 @@
 #include "core/environment/cube_map.h"
 #include "core/environment/sh_projection.h"
 #include "core/environment/sh_rotation.h"
-#include "core/fiber/kajiya_kay.h"
 
 namespace hairbake {
 
@@ -18,26 +17,22 @@ using std::numbers::pi;
 namespace {
 
 constexpr int most_bands = 128;
-constexpr int most_reported_bands = 32;  // turning coefficients costs bands^4
+constexpr int most_reported_bands = 32;  // rotating coefficients costs bands^4
 constexpr double sampling_margin = 1.1;
 
-// The kernels of one group of maps (the diffuse one, or all specular ones) by band.
+// The kernels of one lobe by band: of the diffuse map, or of all specular maps.
 struct Kernels {
     std::vector<std::vector<double>> lambda;  // [maps][most_bands]
     std::vector<double> mean_square;          // mean over maps of lambda_l^2
     double mean_energy = 0;                   // mean over maps of the integral of the squared kernel
 
-    void add(std::vector<double> zonal, double energy) {
-        lambda.push_back(std::move(zonal));
-        mean_energy += energy;
-    }
     void finish() {
         mean_energy /= double(lambda.size());
         mean_square.assign(most_bands, 0);
         for (const auto& row : lambda)
             for (int l = 0; l < most_bands; ++l) mean_square[l] += row[l] * row[l] / double(lambda.size());
     }
-    // Energy that `bands` bands leave out; never below zero, where only rounding is left.
+    // Energy that `bands` bands leave out, at least zero: rounding can take the difference below.
     double energy_beyond(int bands) const {
         double energy = mean_energy;
         for (int l = 0; l < bands; ++l) energy -= mean_square[l] * (2 * l + 1) / (4 * pi);
@@ -45,32 +40,26 @@ struct Kernels {
     }
 };
 
-Kernels diffuse_kernels() {
-    Kernels kernels;
-    kernels.add(diffuse_zonal(most_bands), diffuse_energy());
-    kernels.finish();
-    return kernels;
-}
-
-Kernels specular_kernels(double exponent, int maps) {
+// The kernels of `lobe` at the view angles of `maps` maps.
+Kernels kernels_of(const ZonalKernels& zonal, int lobe, int maps) {
     Kernels kernels;
     kernels.lambda.resize(maps);
     std::vector<double> energies(maps);
     parallel_for(maps, 1, [&](std::size_t m, std::size_t) {
-        const double theta_view = pi * double(m) / (maps - 1);
-        kernels.lambda[m] = specular_zonal(most_bands, exponent, theta_view);
-        energies[m] = specular_energy(exponent, theta_view);
+        const double theta_view = maps > 1 ? view_angle(m, maps) : 0;
+        kernels.lambda[m] = zonal.coefficients(lobe, most_bands, theta_view);
+        energies[m] = zonal.energy(lobe, theta_view);
     });
     for (const double energy : energies) kernels.mean_energy += energy;
     kernels.finish();
     return kernels;
 }
 
-// Bands to project: what lies beyond must be below a quarter of the target for any environment. The largest value of
-// all maps is at least the diffuse map's mean, flux * pi / 4.
-int bands_to_project(const Kernels& kernels, double target) {
+// Bands to project: the error of leaving out all others must be below a quarter of the target for any environment. The
+// largest value of all maps is at least the mean of the diffuse map, which is `diffuse_mean` times the flux.
+int bands_to_project(const Kernels& kernels, double diffuse_mean, double target) {
     for (int bands = 1; bands < most_bands; ++bands)
-        if (std::sqrt(kernels.energy_beyond(bands) / (4 * pi)) / (pi / 4) <= target / 4) return bands;
+        if (std::sqrt(kernels.energy_beyond(bands) / (4 * pi)) / diffuse_mean <= target / 4) return bands;
     return most_bands;
 }
 
@@ -117,18 +106,20 @@ Vec3d convolve(const std::vector<double>& lambda, const std::vector<Vec3d>& valu
     return sum;
 }
 
+struct KernelPair {
+    Kernels diffuse, specular;
+};
+
 struct Bands {
     int diffuse, specular;
 };
 
-// Fills the maps; negative values stay.
-void fill(const Kernels& diffuse, const Kernels& specular, const Environment& environment, Bands bands,
-          const Matrix3& to_world, const Progress& progress, IrradianceMaps& maps) {
-    const int n = maps.face_size;
-    const std::size_t texels = std::size_t(cube_faces) * n * n;
+// The maps with these bands; negative values stay.
+TangentMaps make_maps(const KernelPair& kernels, const Environment& environment, Bands bands, const Matrix3& to_world,
+                      int face_size, const Progress& progress) {
+    const int n = face_size;
     const ShBasis basis(std::max(bands.diffuse, bands.specular));
-    maps.diffuse.assign(texels, {});
-    maps.specular.assign(specular.lambda.size(), CubeTexels(texels));
+    TangentMaps maps(n, kernels.specular.lambda.size());
     parallel_for(std::size_t(cube_faces) * n, 4, [&](std::size_t begin, std::size_t end) {
         progress.check();
         std::vector<double> y(basis.count());
@@ -136,11 +127,12 @@ void fill(const Kernels& diffuse, const Kernels& specular, const Environment& en
         for (std::size_t i = begin * n; i < end * n; ++i) {
             const Vec3d t = cube_texel_direction(n, int(i / n / n), int(i / n % n), int(i % n));
             band_values(environment, basis, transform_back(to_world, t), y, values);
-            maps.diffuse[i] = Vec3f(convolve(diffuse.lambda[0], values, bands.diffuse));
-            for (std::size_t m = 0; m < specular.lambda.size(); ++m)
-                maps.specular[m][i] = Vec3f(convolve(specular.lambda[m], values, bands.specular));
+            maps.diffuse[i] = Vec3f(convolve(kernels.diffuse.lambda[0], values, bands.diffuse));
+            for (std::size_t m = 0; m < maps.specular.size(); ++m)
+                maps.specular[m][i] = Vec3f(convolve(kernels.specular.lambda[m], values, bands.specular));
         }
     });
+    return maps;
 }
 
 double largest_of(const CubeTexels& texels, double largest) {
@@ -148,22 +140,20 @@ double largest_of(const CubeTexels& texels, double largest) {
     return largest;
 }
 
-double largest_value(const IrradianceMaps& maps) {
+double largest_value(const TangentMaps& maps) {
     double largest = largest_of(maps.diffuse, 0);
     for (const CubeTexels& texels : maps.specular) largest = largest_of(texels, largest);
     return largest;
 }
 
-// The largest value of all maps with every projected band, on a grid of its own so that it does not depend on
-// face_size.
-double estimate_largest(const Kernels& diffuse, const Kernels& specular, const Environment& environment,
-                        const Matrix3& to_world, const Progress& progress) {
-    IrradianceMaps probe;
-    probe.face_size = 16;
-    fill(diffuse, specular, environment, {environment.bands, environment.bands}, to_world, progress, probe);
-    return largest_value(probe);
+// The largest value of all maps with every projected band, on a grid of its own: it does not depend on face_size.
+double estimate_largest(const KernelPair& kernels, const Environment& environment, const Matrix3& to_world,
+                        const Progress& progress) {
+    const Bands all{environment.bands, environment.bands};
+    return largest_value(make_maps(kernels, environment, all, to_world, 16, progress));
 }
 
+// Sum of |negative| * solid angle over texels and channels; sets negative values to 0 where `clamp` says so.
 double remove_negative(CubeTexels& texels, const std::vector<double>& solid_angles, bool clamp) {
     double mass = 0;
     for (std::size_t i = 0; i < texels.size(); ++i)
@@ -178,37 +168,39 @@ double remove_negative(CubeTexels& texels, const std::vector<double>& solid_angl
 
 }  // namespace
 
-void bake_sh_maps(const EnvironmentMap& map, const IrradianceSettings& settings, int report_bands,
-                  const Progress& progress, IrradianceMaps& maps) {
-    const Kernels diffuse = diffuse_kernels(), specular = specular_kernels(settings.exponent, settings.specular_maps);
-    const int projected =
-        std::max({bands_to_project(diffuse, settings.sh_error), bands_to_project(specular, settings.sh_error),
-                  report_bands, settings.sh_bands_diffuse.value_or(1), settings.sh_bands_specular.value_or(1)});
+ShMaps bake_sh_maps(const EnvironmentMap& map, const IrradianceSettings& settings, const ZonalKernels& zonal,
+                    int report_bands, const Progress& progress) {
+    const KernelPair kernels{kernels_of(zonal, diffuse_lobe, 1),
+                             kernels_of(zonal, specular_lobe, settings.specular_maps)};
+    const double diffuse_mean = kernels.diffuse.lambda[0][0] / (4 * pi);
+    const int projected = std::max({bands_to_project(kernels.diffuse, diffuse_mean, settings.sh_error),
+                                    bands_to_project(kernels.specular, diffuse_mean, settings.sh_error), report_bands,
+                                    settings.sh_bands_diffuse.value_or(1), settings.sh_bands_specular.value_or(1)});
     const Environment environment(project_sh(map, projected, progress), projected);
     const Matrix3 to_world = map_to_world(map);
 
-    const double allowed = settings.sh_error * estimate_largest(diffuse, specular, environment, to_world, progress);
-    maps.sh_bands_diffuse = settings.sh_bands_diffuse.value_or(choose_bands(diffuse, environment, allowed));
-    maps.sh_bands_specular = settings.sh_bands_specular.value_or(choose_bands(specular, environment, allowed));
-    fill(diffuse, specular, environment, {maps.sh_bands_diffuse, maps.sh_bands_specular}, to_world, progress, maps);
+    const double allowed = settings.sh_error * estimate_largest(kernels, environment, to_world, progress);
+    const Bands bands{settings.sh_bands_diffuse.value_or(choose_bands(kernels.diffuse, environment, allowed)),
+                      settings.sh_bands_specular.value_or(choose_bands(kernels.specular, environment, allowed))};
+    ShMaps baked(make_maps(kernels, environment, bands, to_world, settings.face_size, progress));
+    baked.bands_diffuse = bands.diffuse;
+    baked.bands_specular = bands.specular;
 
-    const double largest = largest_value(maps);
+    const double largest = largest_value(baked.maps);
     const auto relative = [&](double rms) { return largest > 0 ? rms / largest : 0; };
-    maps.predicted_error_diffuse = relative(truncation_rms(diffuse, environment, maps.sh_bands_diffuse));
-    maps.predicted_error_specular = relative(truncation_rms(specular, environment, maps.sh_bands_specular));
+    baked.predicted_error_diffuse = relative(truncation_rms(kernels.diffuse, environment, bands.diffuse));
+    baked.predicted_error_specular = relative(truncation_rms(kernels.specular, environment, bands.specular));
 
-    const std::vector<double> solid_angles = cube_texel_solid_angles(maps.face_size);
-    maps.diffuse_statistics.clamped_negative_mass =
-        remove_negative(maps.diffuse, solid_angles, settings.clamp_negative);
-    for (std::size_t m = 0; m < maps.specular.size(); ++m)
-        maps.specular_statistics[m].clamped_negative_mass =
-            remove_negative(maps.specular[m], solid_angles, settings.clamp_negative);
+    const std::vector<double> solid_angles = cube_texel_solid_angles(settings.face_size);
+    baked.negative_mass_diffuse = remove_negative(baked.maps.diffuse, solid_angles, settings.clamp_negative);
+    for (CubeTexels& texels : baked.maps.specular)
+        baked.negative_mass_specular.push_back(remove_negative(texels, solid_angles, settings.clamp_negative));
 
-    const int used = std::max(maps.sh_bands_diffuse, maps.sh_bands_specular);
-    maps.environment_sh_bands = std::max(report_bands, std::min(used, most_reported_bands));
-    const std::size_t count = std::size_t(maps.environment_sh_bands) * maps.environment_sh_bands;
-    maps.environment_sh =
-        rotate_sh(std::span(environment.coefficients).first(count), maps.environment_sh_bands, to_world);
+    const int used = std::max(bands.diffuse, bands.specular);
+    baked.environment_bands = std::max(report_bands, std::min(used, most_reported_bands));
+    const std::size_t count = std::size_t(baked.environment_bands) * baked.environment_bands;
+    baked.environment = rotate_sh(std::span(environment.coefficients).first(count), baked.environment_bands, to_world);
+    return baked;
 }
 
 }  // namespace hairbake

@@ -47,7 +47,7 @@ Json environment_input(const EnvironmentMap& map) {
     else
         block.update({{"width", map.width}, {"height", map.height}});
     block["format"] = map.source_format;
-    block["layout"] = map.layout;
+    block["layout"] = std::string(name_of(map.layout));
     if (map.shape == EnvironmentShape::latlong) block["latlong"] = std::string(name_of(map.latlong));
     block["primaries"] = map.primaries;
     block["low_dynamic_range"] = map.low_dynamic_range;

@@ -21,7 +21,7 @@ double tangent_of_half(double fov_deg) {
     return std::tan(fov_deg * pi / 360);
 }
 
-/// How far from the middle of a box the eye must be to see all its corners: a corner (x, y, z) in the camera's axes is
+/// The distance from the middle of a box at which the eye sees all its corners: a corner (x, y, z) in the camera's axes is
 /// in the picture when |x| <= (d - z) tangent aspect and |y| <= (d - z) tangent.
 double framing_distance(const Camera& camera, const Vec3d& low, const Vec3d& high, const Vec3d& target, double aspect) {
     constexpr double margin = 1.04;
@@ -33,7 +33,7 @@ double framing_distance(const Camera& camera, const Vec3d& low, const Vec3d& hig
             std::max(std::abs(dot(from_target, camera.right)) / aspect, std::abs(dot(from_target, camera.up)));
         distance = std::max(distance, dot(from_target, camera.backward) + margin * sideways / camera.tangent);
     }
-    return distance > 0 ? distance : 1;  // a model of one point is seen from anywhere
+    return distance > 0 ? distance : 1;  // a model of one point is visible from any distance
 }
 
 }  // namespace

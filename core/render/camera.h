@@ -20,11 +20,12 @@ struct Camera {
     }
 };
 
-/// A camera that looks at a target from around it. Azimuth 0 looks from +Z (at the face of a head that looks along
-/// +Z), 90 from +X; elevation 90 looks down from +Y. What is not given follows from the bounds.
+/// A camera on a sphere around its target. At azimuth 0 it is at +Z of the target (in front of a head that looks along
+/// +Z), at azimuth 90 at +X; at elevation 90 it looks down from +Y. Defaults follow from the bounds of the model.
 struct OrbitSettings {
-    std::optional<Vec3d> target;     ///< default: middle of the bounds
-    std::optional<double> distance;  ///< model units, > 0; default: as near as all of the bounds' box is in the picture
+    std::optional<Vec3d> target;  ///< default: middle of the bounds
+    std::optional<double>
+        distance;  ///< model units, > 0; default: the nearest at which the whole box is in the picture
     double azimuth_deg = 0;
     double elevation_deg = 0;  ///< -90 to 90
     double fov_deg = 30;       ///< vertical field of view, 1 to 150
@@ -33,8 +34,9 @@ struct OrbitSettings {
 /// Throws Error(usage) naming the field out of range.
 Camera orbit_camera(const OrbitSettings& settings, const Vec3f& bounds_min, const Vec3f& bounds_max, double aspect);
 
-/// A camera at `eye` that looks at `target`; `up` is upwards in the picture. Throws Error(usage) when they do not give
-/// a direction (eye at the target, up along the view) or the field of view is not 1 to 150 degrees.
+/// A camera at `eye` that looks at `target`; `up` is upwards in the picture.
+/// Throws Error(usage) where they give no direction (eye at the target, up along the view) or the field of view is not 1
+/// to 150 degrees.
 Camera look_at(const Vec3d& eye, const Vec3d& target, const Vec3d& up, double fov_deg);
 
 }  // namespace hairbake

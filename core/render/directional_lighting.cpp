@@ -1,7 +1,8 @@
-// The mode that knows transmittance by direction, roughly.
+// The mode with a baked directional transmittance.
 #include <algorithm>
 #include <array>
 
+#include "core/base/assert.h"
 #include "core/base/spherical_harmonics.h"
 #include "core/render/fiber_lighting.h"
 
@@ -16,24 +17,24 @@ double sum_of(const Vec3d& v) { return v.x + v.y + v.z; }
 /// Sums over all lights; seen_by(block, seen) fills in T of a block's lights.
 template <class SeenBy>
 FiberLight sum_seen(const LightSum& lights, const StrandPoint& point, const SeenBy& seen_by) {
-    KernelSums sums;
-    double unhidden = 0;
+    LobeSums sums;
+    double unblocked = 0;  // through the first lobe
     KernelBlock kernels;
     alignas(64) Seen seen;
     for (std::size_t b = 0; b < lights.blocks(); ++b) {
-        lights.kernels(b, point.tangent, point.to_eye, kernels);
+        lights.evaluate(b, point.view, kernels);
         seen_by(b, seen);
         lights.add(b, kernels, seen.data(), sums);
-        unhidden += lights.energy(b, kernels.sine);
+        unblocked += lights.energy(b, kernels, 0);
     }
-    return {unhidden > 0 ? sum_of(sums.diffuse) / unhidden : 1, sums.diffuse, sums.specular};
+    return {unblocked > 0 ? sum_of(sums[0]) / unblocked : 1, sums};
 }
 
 class ShLighting : public FiberLighting {
 public:
     ShLighting(const DirectionalTransmittance& transmittance, const LightSum& lights)
         : transmittance_(transmittance), lights_(lights), count_(transmittance.sh_bands * transmittance.sh_bands) {
-        // Harmonics of every light, block by block and one after another: [block][coefficient][light].
+        // Harmonics of every light: [block][coefficient][light].
         const ShBasis basis(transmittance.sh_bands);
         harmonics_.assign(lights.blocks() * light_block * count_, 0.0f);
         std::vector<double> values(count_);
@@ -113,6 +114,7 @@ private:
 
 std::unique_ptr<FiberLighting> directional_lighting(const DirectionalTransmittance& transmittance,
                                                     const LightSum& lights) {
+    HAIRBAKE_ASSERT(transmittance.sh.empty() != transmittance.bent_cone.empty() && transmittance.sh_bands <= 4);
     if (transmittance.sh_bands > 0) return std::make_unique<ShLighting>(transmittance, lights);
     return std::make_unique<ConeLighting>(transmittance, lights);
 }

@@ -29,7 +29,7 @@ RTCRayHit aim(const Vec3f& origin, const Vec3f& direction) {
     return ray;
 }
 
-/// Whether the ray meets something of the scene before what it met already; it is cut off there.
+/// Whether the ray meets the scene before its end; the ray then ends there.
 bool meets(RTCScene scene, RTCRayHit& ray) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);

@@ -1,4 +1,4 @@
-// What a ray from the camera meets first.
+// The first surface that a ray from the camera meets.
 #pragma once
 
 #include <cstdint>
@@ -21,12 +21,13 @@ struct FirstHit {
     Vec3d normal;  ///< unit, of the mesh's surface, interpolated between its vertices
 };
 
-/// The strands as round linear curves with their widths (opaque, whatever strand.opacity is: that says how strongly
-/// they shadow) and a mesh as triangles. Refers to the scene, which must outlive it. Immutable after construction; may
-/// be asked from several threads.
+/// The strands as round linear curves with their widths, and a mesh as triangles. Strands are opaque to the camera;
+/// strand.opacity applies to their shadows alone. Refers to the scene, which must outlive it. Immutable after
+/// construction: thread-safe.
 class FirstHits {
 public:
-    /// `mesh` may be null; it is copied. Throws Error(out_of_resources), Error(internal) with Embree's words.
+    /// `mesh` may be null; it is copied.
+    /// Throws Error(out_of_resources), Error(internal) with Embree's error code.
     FirstHits(const StrandScene& strands, const TriangleMesh* mesh);
     ~FirstHits();
     FirstHits(const FirstHits&) = delete;

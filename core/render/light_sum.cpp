@@ -1,13 +1,13 @@
 #include "core/render/light_sum.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
+
+#include "core/base/assert.h"
 
 namespace hairbake {
 namespace {
 
-/// Sum of a * b over a block: sixteen sums side by side, so that the compiler needs no leave to reorder.
+/// Sum of a * b over a block: sixteen sums side by side, so that the compiler may vectorise without reordering a sum.
 double dot_block(const float* a, const float* b) {
     constexpr std::size_t lanes = 16;
     std::array<float, lanes> sum{};
@@ -18,82 +18,81 @@ double dot_block(const float* a, const float* b) {
     return total;
 }
 
+/// The kernel of one channel; a lobe without color has one kernel for all three.
+const float* kernel_of(const KernelBlock& kernels, const FiberLobe& lobe, std::size_t index, int channel) {
+    return kernels.values[index][lobe.colored ? channel : 0];
+}
+
 }  // namespace
 
-LightSum::LightSum(const LightSet& lights, double exponent) : count_(lights.size()), exponent_(exponent) {
+LightSum::LightSum(const LightSet& lights, const FiberModel& model)
+    : model_(model), lobes_(model.lobes()), count_(lights.size()) {
+    HAIRBAKE_ASSERT(!lobes_.empty() && lobes_.size() <= most_lobes);
     const std::size_t padded = (count_ + light_block - 1) / light_block * light_block;
     x_ = lights.x;
     y_ = lights.y;
     z_ = lights.z;
-    for (std::vector<float>* v : {&x_, &y_, &z_, &red_, &green_, &blue_, &energy_}) v->resize(padded, 0.0f);
+    for (std::vector<float>* v : {&x_, &y_, &z_, &red_, &green_, &blue_, &all_}) v->resize(padded, 0.0f);
     for (std::size_t i = 0; i < count_; ++i) {
         red_[i] = lights.flux[4 * i];
         green_[i] = lights.flux[4 * i + 1];
         blue_[i] = lights.flux[4 * i + 2];
-        energy_[i] = red_[i] + green_[i] + blue_[i];
+        all_[i] = red_[i] + green_[i] + blue_[i];
     }
-    whole_ = exponent >= 1 && exponent == std::floor(exponent);
-    cut_ = exponent > 0 ? static_cast<float>(std::exp(std::log(1e-12) / std::max(exponent, 0.5))) : 0;
 }
 
-/// power = base^exponent, base in {0} and [cut, 1]; base is used up. The cut keeps every square a normal number.
-void LightSum::raise(float* base, float* power) const {
-    if (!whole_) {
-        const auto p = static_cast<float>(exponent_);
-        for (std::size_t i = 0; i < light_block; ++i) power[i] = base[i] > 0 ? std::pow(base[i], p) : 0.0f;
+void LightSum::evaluate(std::size_t block, const FiberView& view, KernelBlock& kernels) const {
+    const std::size_t first = block * light_block;
+    model_.evaluate({&x_[first], &y_[first], &z_[first]}, view, kernels);
+}
+
+void LightSum::add(std::size_t block, const KernelBlock& kernels, const float* transmittance, LobeSums& sums) const {
+    const std::size_t first = block * light_block;
+    const std::array<const float*, 3> flux{&red_[first], &green_[first], &blue_[first]};
+    alignas(64) float seen[light_block];
+    for (std::size_t k = 0; k < lobes_.size(); ++k) {
+        Vec3d sum;
+        const float* kernel = nullptr;
+        for (int channel = 0; channel < 3; ++channel) {
+            if (channel == 0 || lobes_[k].colored) {
+                kernel = kernel_of(kernels, lobes_[k], k, channel);
+                if (transmittance) {
+                    for (std::size_t i = 0; i < light_block; ++i) seen[i] = kernel[i] * transmittance[i];
+                    kernel = seen;
+                }
+            }
+            sum[channel] = dot_block(flux[channel], kernel);
+        }
+        sums[k] += sum;
+    }
+}
+
+void LightSum::energies(std::size_t block, const KernelBlock& kernels, std::size_t lobe, float* energy) const {
+    const std::size_t first = block * light_block;
+    if (!lobes_[lobe].colored) {
+        const float* kernel = kernels.values[lobe][0];
+        for (std::size_t i = 0; i < light_block; ++i) energy[i] = kernel[i] * all_[first + i];
         return;
     }
-    auto left = static_cast<unsigned>(exponent_);
-    std::fill_n(power, light_block, 1.0f);
-    for (;; left >>= 1) {
-        if (left & 1)
-            for (std::size_t i = 0; i < light_block; ++i) power[i] *= base[i];
-        if (left <= 1) return;
-        for (std::size_t i = 0; i < light_block; ++i) base[i] *= base[i];
-    }
+    const auto& kernel = kernels.values[lobe];
+    for (std::size_t i = 0; i < light_block; ++i)
+        energy[i] = kernel[0][i] * red_[first + i] + kernel[1][i] * green_[first + i] + kernel[2][i] * blue_[first + i];
 }
 
-void LightSum::kernels(std::size_t block, const Vec3d& tangent, const Vec3d& to_eye, KernelBlock& out) const {
-    const float *x = &x_[block * light_block], *y = &y_[block * light_block], *z = &z_[block * light_block];
-    const Vec3f t(tangent);
-    const auto eye_cosine = static_cast<float>(dot(tangent, to_eye));
-    const auto eye_sine = static_cast<float>(length(cross(tangent, to_eye)));
-    alignas(64) float base[light_block];
-    for (std::size_t i = 0; i < light_block; ++i) {
-        const float cx = t.y * z[i] - t.z * y[i], cy = t.z * x[i] - t.x * z[i], cz = t.x * y[i] - t.y * x[i];
-        const float sine = std::sqrt(cx * cx + cy * cy + cz * cz);
-        const float cosine = sine * eye_sine - (t.x * x[i] + t.y * y[i] + t.z * z[i]) * eye_cosine;
-        out.sine[i] = sine;
-        base[i] = cosine > cut_ ? std::min(cosine, 1.0f) : 0.0f;
-    }
-    raise(base, out.lobe);
-}
-
-void LightSum::add(std::size_t block, const KernelBlock& kernels, const float* transmittance, KernelSums& sums) const {
+double LightSum::energy(std::size_t block, const KernelBlock& kernels, std::size_t lobe) const {
     const std::size_t first = block * light_block;
-    const float *diffuse = kernels.sine, *specular = kernels.lobe;
-    alignas(64) float seen[2][light_block];
-    if (transmittance) {
-        for (std::size_t i = 0; i < light_block; ++i) {
-            seen[0][i] = kernels.sine[i] * transmittance[i];
-            seen[1][i] = kernels.lobe[i] * transmittance[i];
-        }
-        diffuse = seen[0];
-        specular = seen[1];
-    }
-    const float *red = &red_[first], *green = &green_[first], *blue = &blue_[first];
-    sums.diffuse += {dot_block(red, diffuse), dot_block(green, diffuse), dot_block(blue, diffuse)};
-    sums.specular += {dot_block(red, specular), dot_block(green, specular), dot_block(blue, specular)};
+    const auto& kernel = kernels.values[lobe];
+    if (!lobes_[lobe].colored) return dot_block(&all_[first], kernel[0]);
+    return dot_block(&red_[first], kernel[0]) + dot_block(&green_[first], kernel[1]) +
+           dot_block(&blue_[first], kernel[2]);
 }
 
-double LightSum::energy(std::size_t block, const float* kernel) const { return dot_block(energy(block), kernel); }
-
-KernelSums LightSum::sum(const Vec3d& tangent, const Vec3d& to_eye) const {
-    KernelSums sums;
-    KernelBlock block;
+LobeSums LightSum::sum(const FiberView& view) const {
+    LobeSums sums;
+    KernelBlock kernels;
     for (std::size_t b = 0; b < blocks(); ++b) {
-        kernels(b, tangent, to_eye, block);
-        add(b, block, nullptr, sums);
+        evaluate(b, view, kernels);
+        add(b, kernels, nullptr, sums);
     }
     return sums;
 }

@@ -1,4 +1,4 @@
-// The modes that know A alone: from the maps, from the lights, and without light.
+// The modes with the average transmittance A alone: from the maps, from the lights, and without light.
 #include "core/irradiance/lookup.h"
 #include "core/render/fiber_lighting.h"
 
@@ -15,8 +15,10 @@ public:
         progress.check();
         for (std::size_t i = 0; i < points.size(); ++i) {
             const double a = transmittance_.at(points[i].place);
-            result[i] = {a, look_up_diffuse(maps_, points[i].tangent) * a,
-                         look_up_specular(maps_, points[i].tangent, points[i].to_eye) * a};
+            const FiberView& view = points[i].view;
+            result[i] = {a, {}};
+            result[i].lobes[diffuse_lobe] = look_up_diffuse(maps_, view.tangent) * a;
+            result[i].lobes[specular_lobe] = look_up_specular(maps_, view.tangent, view.to_eye) * a;
         }
     }
 
@@ -32,7 +34,7 @@ public:
     void light(std::span<const StrandPoint> points, std::span<FiberLight> result,
                const Progress& progress) const override {
         progress.check();
-        for (std::size_t i = 0; i < points.size(); ++i) result[i] = {transmittance_.at(points[i].place), {}, {}};
+        for (std::size_t i = 0; i < points.size(); ++i) result[i] = {transmittance_.at(points[i].place), {}};
     }
 
 private:
@@ -49,8 +51,8 @@ public:
         for (std::size_t i = 0; i < points.size(); ++i) {
             progress.check();
             const double a = transmittance_.at(points[i].place);
-            const KernelSums sums = lights_.sum(points[i].tangent, points[i].to_eye);
-            result[i] = {a, sums.diffuse * a, sums.specular * a};
+            result[i] = {a, lights_.sum(points[i].view)};
+            for (Vec3d& lobe : result[i].lobes) lobe *= a;
         }
     }
 

@@ -1,4 +1,4 @@
-// Where the samples of a pixel lie.
+// Positions of the samples of a pixel.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,16 @@ struct PixelPoint {
     double x = 0, y = 0;
 };
 
-/// A number that depends on all three and looks random: the seed of what happens at one sample of one pixel.
+/// A pseudo-random number of all three arguments: the seed of one sample of one pixel.
 inline std::uint64_t sample_seed(std::uint64_t seed, std::uint64_t pixel, std::uint64_t sample) {
     Random first(seed ^ 0x6A09E667F3BCC908u);
     Random second(first.next_u64() + pixel);
     return Random(second.next_u64() + sample).next_u64();
 }
 
-/// The points of one pixel, stratified for any count: point k of n lies in column k of n columns, and the rows follow
-/// the golden ratio (Fibonacci lattice), the whole shifted by a random vector of the pixel (Cranley and Patterson
-/// 1976) and jittered within the column. The same arguments give the same points everywhere.
+/// The points of one pixel, stratified for any count. Point k of n lies in column k of n columns, jittered within the
+/// column; the rows follow the golden ratio (Fibonacci lattice), shifted by a random number of the pixel (Cranley and
+/// Patterson 1976). The same arguments give the same points on every machine.
 class PixelSamples {
 public:
     PixelSamples(std::uint64_t seed, std::uint64_t pixel, int count);

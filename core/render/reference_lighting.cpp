@@ -1,4 +1,4 @@
-// The mode that knows everything: traced transmittance inside the sum over the lights.
+// The mode with the traced transmittance inside the sum over the lights.
 #include <algorithm>
 #include <utility>
 #include <vector>
@@ -12,17 +12,31 @@ namespace {
 
 double sum_of(const Vec3d& v) { return v.x + v.y + v.z; }
 
-/// Energy that every light would send through one kernel if nothing hid it: what lights are drawn by.
+/// Energy that every light would send through one lobe if nothing blocked it; lights are drawn in proportion to it.
 class LightWeights {
 public:
-    explicit LightWeights(const LightSum& lights)
-        : lights_(lights), weight_(lights.blocks() * light_block), block_(lights.blocks()) {}
+    LightWeights(const LightSum& lights, std::size_t lobe)
+        : lights_(lights),
+          lobe_(lobe),
+          colored_(lights.lobes()[lobe].colored),
+          weight_(lights.blocks() * light_block),
+          block_(lights.blocks()) {
+        if (colored_) kernel_.resize(weight_.size());
+    }
 
-    void set(std::size_t block, const float* kernel) {
-        const float* energy = lights_.energy(block);
-        float* weight = &weight_[block * light_block];
-        for (std::size_t i = 0; i < light_block; ++i) weight[i] = kernel[i] * energy[i];
-        block_[block] = lights_.energy(block, kernel);
+    void set(std::size_t block, const KernelBlock& kernels) {
+        const std::size_t first = block * light_block;
+        lights_.energies(block, kernels, lobe_, &weight_[first]);
+        block_[block] = lights_.energy(block, kernels, lobe_);
+        if (!colored_) return;
+        const auto& kernel = kernels.values[lobe_];
+        for (std::size_t i = 0; i < light_block; ++i) kernel_[first + i] = {kernel[0][i], kernel[1][i], kernel[2][i]};
+    }
+
+    /// The color of the light that arrives from `light` through the lobe, of any length but 0.
+    Vec3d color(std::size_t light) const {
+        const Vec3d flux(lights_.flux(light));
+        return colored_ ? flux * Vec3d(kernel_[light]) : flux;
     }
 
     double total() const {
@@ -46,7 +60,7 @@ public:
     }
 
 private:
-    /// The light of the block at `rest` of its weight. Rounding may leave a rest: then the last light with weight.
+    /// The light of the block at `rest` of its weight; the last light with weight where rounding leaves a rest.
     std::size_t find(std::size_t block, double rest) const {
         const float* weight = &weight_[block * light_block];
         std::size_t last = 0;
@@ -60,8 +74,11 @@ private:
     }
 
     const LightSum& lights_;
+    std::size_t lobe_;
+    bool colored_;
     std::vector<float> weight_;
     std::vector<double> block_;
+    std::vector<Vec3f> kernel_;  // of a colored lobe
 };
 
 class ReferenceLighting : public FiberLighting {
@@ -71,44 +88,44 @@ public:
 
     void light(std::span<const StrandPoint> points, std::span<FiberLight> result,
                const Progress& progress) const override {
-        LightWeights diffuse(lights_), specular(lights_);
+        std::vector<LightWeights> weights;
+        for (std::size_t lobe = 0; lobe < lights_.lobes().size(); ++lobe) weights.emplace_back(lights_, lobe);
         KernelBlock kernels;
         for (std::size_t i = 0; i < points.size(); ++i) {
             progress.check();
             const StrandPoint& point = points[i];
-            KernelSums unhidden;
+            LobeSums unblocked;
             for (std::size_t b = 0; b < lights_.blocks(); ++b) {
-                lights_.kernels(b, point.tangent, point.to_eye, kernels);
-                lights_.add(b, kernels, nullptr, unhidden);
-                diffuse.set(b, kernels.sine);
-                specular.set(b, kernels.lobe);
+                lights_.evaluate(b, point.view, kernels);
+                lights_.add(b, kernels, nullptr, unblocked);
+                for (LightWeights& lobe : weights) lobe.set(b, kernels);
             }
-            // With another number of lights other lights are drawn, so that two pictures tell how large the noise is.
+            // Another number of lights draws other lights, so that the difference of two pictures shows the noise.
             Random random(sample_seed(point.seed, static_cast<std::uint64_t>(light_samples_), 0));
             const double guess = guess_.at(point.place);
-            FiberLight& light = result[i];
-            light.diffuse = arriving(diffuse, unhidden.diffuse, point, guess, random);
-            light.specular = arriving(specular, unhidden.specular, point, guess, random);
-            const double all = sum_of(unhidden.diffuse);
-            light.transmittance = all > 0 ? sum_of(light.diffuse) / all : 1;
+            result[i] = {};
+            for (std::size_t lobe = 0; lobe < weights.size(); ++lobe)
+                result[i].lobes[lobe] = arriving(weights[lobe], unblocked[lobe], point, guess, random);
+            const double all = sum_of(unblocked[0]);
+            result[i].transmittance = all > 0 ? sum_of(result[i].lobes[0]) / all : 1;
         }
     }
 
 private:
-    /// Estimates the sum of flux * kernel * T over the lights. A light drawn stands for its flux over its energy, a
-    /// colour, times the total energy; that colour times `guess` is replaced by its known mean, the unhidden sum.
-    Vec3d arriving(const LightWeights& weights, const Vec3d& unhidden, const StrandPoint& point, double guess,
+    /// Estimates the sum of flux * kernel * T over the lights. A drawn light stands for its color over its energy times
+    /// the total energy; that color times `guess` is replaced by its known mean, the unblocked sum.
+    Vec3d arriving(const LightWeights& weights, const Vec3d& unblocked, const StrandPoint& point, double guess,
                    Random& random) const {
         const double total = weights.total();
         if (!(total > 0)) return {};
         Vec3d sum;
         weights.draw(light_samples_, random, [&](std::size_t light) {
             const std::uint32_t vertex = point.place.vertex + (random.next() < point.place.u ? 1 : 0);
-            const Vec3d flux(lights_.flux(light));
+            const Vec3d color = weights.color(light);
             const double t = double(rays_.transmittance(vertex, lights_.direction(light)));
-            sum += flux * ((t - guess) / sum_of(flux));
+            sum += color * ((t - guess) / sum_of(color));
         });
-        return sum * (total / light_samples_) + unhidden * guess;
+        return sum * (total / light_samples_) + unblocked * guess;
     }
 
     VertexRays rays_;

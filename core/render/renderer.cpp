@@ -4,17 +4,18 @@
 #include <atomic>
 #include <numbers>
 
+#include "core/base/assert.h"
 #include "core/base/parallel.h"
 #include "core/render/pixel_samples.h"
 
 namespace hairbake {
 namespace {
 
-constexpr int tile_side = 8;  // small, so that a tile of many samples and lights does not last long
+constexpr int tile_side = 8;  // small: a tile of many samples and lights must not take long
 
-constexpr std::size_t most_points = 16384;  // that wait to be lit: many samples a pixel take no more memory than few
+constexpr std::size_t most_points = 16384;  // that wait to be lit; bounds the memory for many samples a pixel
 
-/// One tile: the samples of its pixels, strands lit together.
+/// One tile of the picture. The strand points of its pixels are lit together.
 class Tile {
 public:
     Tile(const RenderScene& scene, const Camera& camera, const FrameSettings& settings, int left, int top)
@@ -30,7 +31,7 @@ public:
     void render(const Progress& progress, std::vector<Vec3f>& picture) {
         for (int y = 0; y < height_; ++y)
             for (int x = 0; x < width_; ++x) {
-                look_through_pixel(x, y);
+                sample_pixel(x, y);
                 if (points_.size() >= most_points) light_points(progress);
             }
         light_points(progress);
@@ -49,7 +50,7 @@ private:
         pixel_.clear();
     }
 
-    void look_through_pixel(int x, int y) {
+    void sample_pixel(int x, int y) {
         const auto pixel = static_cast<std::uint64_t>(top_ + y) * settings_.width + left_ + x;
         const std::size_t here = static_cast<std::size_t>(y) * width_ + x;
         const double aspect = double(settings_.width) / settings_.height;
@@ -60,7 +61,8 @@ private:
                                                       1 - 2 * (top_ + y + point.y) / settings_.height, aspect);
             const FirstHit hit = scene_.hits.find(camera_.eye, direction);
             if (hit.kind == FirstHit::Kind::strand) {
-                points_.push_back({hit.strand, tangent_at(hit.strand), -direction,
+                points_.push_back({hit.strand,
+                                   {tangent_at(hit.strand), -direction},
                                    sample_seed(settings_.seed + 1, pixel, static_cast<std::uint64_t>(k))});
                 pixel_.push_back(here);
             } else if (settings_.channel == Channel::beauty) {
@@ -91,18 +93,26 @@ private:
         return Vec3d(map.pixels[static_cast<std::size_t>(y) * map.width + x]);
     }
 
+    /// Light through the lobes of one role, Kd or Ks applied.
+    Vec3d lobes_of(const FiberLight& light, LobeRole role) const {
+        Vec3d sum;
+        for (std::size_t k = 0; k < scene_.lobes.size(); ++k)
+            if (scene_.lobes[k].role == role) sum += light.lobes[k];
+        return sum * (role == LobeRole::diffuse ? scene_.kd : scene_.ks);
+    }
+
     Vec3d value_of(const StrandPoint& point, const FiberLight& light) const {
         switch (settings_.channel) {
             case Channel::beauty:
-                return scene_.kd * light.diffuse + scene_.ks * light.specular;
+                return lobes_of(light, LobeRole::diffuse) + lobes_of(light, LobeRole::specular);
             case Channel::transmittance:
                 return Vec3d(light.transmittance);
             case Channel::diffuse:
-                return scene_.kd * light.diffuse;
+                return lobes_of(light, LobeRole::diffuse);
             case Channel::specular:
-                return scene_.ks * light.specular;
+                return lobes_of(light, LobeRole::specular);
             case Channel::tangent:
-                return point.tangent;
+                return point.view.tangent;
         }
         return {};
     }
@@ -121,6 +131,8 @@ private:
 
 std::vector<Vec3f> render_frame(const RenderScene& scene, const Camera& camera, const FrameSettings& settings,
                                 Progress& progress) {
+    HAIRBAKE_ASSERT(settings.width >= 1 && settings.width <= 16384 && settings.height >= 1 && settings.height <= 16384);
+    HAIRBAKE_ASSERT(settings.samples >= 1 && settings.samples <= 65536 && scene.lobes.size() <= most_lobes);
     const int columns = (settings.width + tile_side - 1) / tile_side;
     const std::size_t tiles = static_cast<std::size_t>(columns) * ((settings.height + tile_side - 1) / tile_side);
     std::vector<Vec3f> picture(static_cast<std::size_t>(settings.width) * settings.height);

@@ -1,4 +1,4 @@
-// Transmittance of a bake at a point between two vertices.
+// Baked transmittance at a point between two vertices.
 #pragma once
 
 #include <span>
@@ -19,7 +19,7 @@ struct VertexTransmittance {
     }
 };
 
-/// T(x, l) from what a bake keeps of the directions: exactly one of the two is given.
+/// Baked directional transmittance T(x, l): exactly one of `sh` and `bent_cone` is given.
 struct DirectionalTransmittance {
     std::span<const float> average;    ///< [V], A
     std::span<const float> sh;         ///< [V * bands^2], order l * l + l + m (Transmittance::sh)
@@ -27,13 +27,13 @@ struct DirectionalTransmittance {
     std::span<const float> bent_cone;  ///< [V * 4], axis and half-angle (Transmittance::bent_cone)
 };
 
-/// T over directions that a bent cone stands for: A / share inside the cone and nothing outside, with a border that is
-/// soft in the cosine, so that its mean over the sphere is A. `share` = (1 - cos(half-angle)) / 2 is the cone's part of
-/// the sphere. Where A > share, T inside is 1 and the mean is less than A.
+/// T over directions as a bent cone: A / share inside the cone and 0 outside, so that the mean over the sphere is A.
+/// `share` = (1 - cos(half-angle)) / 2 is the cone's part of the sphere. The border is a linear ramp in the cosine, which
+/// keeps the mean. Where A > share, T inside is 1 and the mean is less than A.
 class BentCone {
 public:
-    /// From A and the vector A |b| axis, |b| = (1 + cos(half-angle)) / 2: both are means over directions (of T and of T
-    /// l), so that they may be interpolated between vertices.
+    /// From A and the vector A |b| axis, |b| = (1 + cos(half-angle)) / 2. Both are means over directions (of T and of T
+    /// l), so they may be interpolated between vertices.
     BentCone(double average, const Vec3d& moment);
 
     /// The first moment of a stored cone: A |b| axis.

@@ -76,13 +76,16 @@ void check_transmittance(const TransmittanceSettings& settings) {
 }
 
 void check_environment(const EnvironmentSettings& settings) {
-    check_choice(
-        "environment_settings.layout", settings.layout,
-        {"auto", "latlong", "faces", "horizontal_cross", "vertical_cross", "horizontal_strip", "vertical_strip"});
     for (const double angle : settings.rotation_deg)
         check_range("environment_settings.rotation_deg", angle, -36000, 36000);
     check_range("environment_settings.exposure_stops", settings.exposure_stops, -64, 64);
     for (const double factor : settings.tint) check_range("environment_settings.tint", factor, 0, 1e6);
+}
+
+/// Of the chosen model alone.
+void check_fiber(const FiberSettings& settings) {
+    for (const FiberNumber& number : fiber_numbers)
+        if (number.model == settings.model) check_range(path_of(number), number.of(settings), number.low, number.high);
 }
 
 void check_light(const std::string& field, const DirectionalLight& light) {
@@ -95,10 +98,8 @@ void check_light(const std::string& field, const DirectionalLight& light) {
 }
 
 void check_irradiance(const IrradianceSettings& settings) {
-    check_choice("fiber.model", settings.model, {"kajiya-kay"});
     check_range("irradiance.face_size", settings.face_size, 4, 256);
     check_range("irradiance.specular_maps", settings.specular_maps, 2, 257);
-    check_range("fiber.kajiya_kay.exponent", settings.exponent, 0, 4096);
     if (settings.sh_bands_diffuse) check_range("irradiance.sh_bands.diffuse", *settings.sh_bands_diffuse, 1, 128);
     if (settings.sh_bands_specular) check_range("irradiance.sh_bands.specular", *settings.sh_bands_specular, 1, 128);
     check_positive("irradiance.sh_error", settings.sh_error, 1);
@@ -141,6 +142,7 @@ void validate(const BakeRequest& request) {
     check_strand(request.strand);
     check_transmittance(request.transmittance);
     check_environment(request.environment_settings);
+    check_fiber(request.fiber);
     check_irradiance(request.irradiance);
     check_occluder(request);
     check_outputs(request);

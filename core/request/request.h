@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/environment/environment_settings.h"
+#include "core/fiber/fiber_settings.h"
 #include "core/hair/strand_settings.h"
 #include "core/irradiance/irradiance_settings.h"
 #include "core/visibility/transmittance_settings.h"
@@ -21,7 +22,8 @@ struct BakeRequest {
     std::optional<std::string> receiver;     ///< path of a mesh that hair shadows; needs hair
     StrandSettings strand;
     TransmittanceSettings transmittance;
-    EnvironmentSettings environment_settings;  ///< part of the JSON block "irradiance"
+    EnvironmentSettings environment_settings;
+    FiberSettings fiber;
     IrradianceSettings irradiance;
     std::vector<std::string> outputs{"npy", "exr", "hair"};  ///< of output_formats(); each at most once
 

@@ -87,12 +87,6 @@ Field boolean(std::string path, At at) {
 }
 
 template <class At>
-Field string(std::string path, At at) {
-    return {path, [at](const BakeRequest& r) { return Json(at(r)); },
-            [=](BakeRequest& r, const Json& v) { at(r) = read_string(path, v); }};
-}
-
-template <class At>
 Field optional_string(std::string path, At at) {
     return {path, [at](const BakeRequest& r) { return at(r) ? Json(*at(r)) : Json(); },
             [=](BakeRequest& r, const Json& v) {
@@ -143,6 +137,14 @@ Field choice(std::string path, Names<Enum> names, At at) {
                 }
                 refuse_value(path, v, allowed);
             }};
+}
+
+/// By the enum's own table of names.
+template <class Enum, std::size_t count, class At>
+Field choice(std::string path, const std::array<EnumName<Enum>, count>& table, At at) {
+    Names<Enum> names;
+    for (const EnumName<Enum>& entry : table) names.emplace_back(entry.name, entry.value);
+    return choice<Enum>(std::move(path), std::move(names), at);
 }
 
 Field opacity(const std::string& path) {
@@ -206,10 +208,9 @@ Field added(Field field, Json first_value) {
 #define AT(member) \
     [](auto& r) -> auto& { return r.member; }  // NOLINT(bugprone-macro-parentheses): a member cannot stand in them
 
-std::vector<Field> make_fields() {
+std::vector<Field> hair_fields() {
     using T = TransmittanceMethod;
     using D = DirectionSet;
-    using I = IrradianceMethod;
     return {
         optional_string("hair", AT(hair)),
         optional_string("environment", AT(environment)),
@@ -235,32 +236,61 @@ std::vector<Field> make_fields() {
         number("transmittance.opacity_maps.layer_spacing", AT(transmittance.opacity_maps.layer_spacing)),
         integer("transmittance.opacity_maps.resolution", AT(transmittance.opacity_maps.resolution)),
         integer("transmittance.reference_vertices", AT(transmittance.reference_vertices)),
-        moved(string("fiber.model", AT(irradiance.model)), "irradiance.model"),
-        moved(number("fiber.kajiya_kay.exponent", AT(irradiance.exponent)), "irradiance.exponent"),
-        moved(string("environment_settings.layout", AT(environment_settings.layout)), "irradiance.layout"),
-        moved(choice<LatLong>("environment_settings.latlong",
-                              {{"gltf", LatLong::gltf}, {"filament", LatLong::filament}, {"openexr", LatLong::openexr}},
-                              AT(environment_settings.latlong)),
+    };
+}
+
+/// The model, and one field for each parameter of each model.
+std::vector<Field> fiber_fields() {
+    Names<FiberModelKind> names;
+    for (const FiberModelEntry& entry : fiber_models) names.emplace_back(entry.name, entry.kind);
+    std::vector<Field> fields{
+        moved(choice<FiberModelKind>("fiber.model", std::move(names), AT(fiber.model)), "irradiance.model")};
+    for (const FiberNumber& entry : fiber_numbers) {
+        const std::string path = path_of(entry);
+        fields.push_back(
+            {path, [entry](const BakeRequest& r) { return Json(entry.of(r.fiber)); },
+             [entry, path](BakeRequest& r, const Json& v) { entry.member(r.fiber) = read_number(path, v); }});
+        if (path == "fiber.kajiya_kay.exponent") fields.back().first_path = "irradiance.exponent";
+    }
+    return fields;
+}
+
+std::vector<Field> environment_fields() {
+    return {
+        moved(choice("environment_settings.layout", environment_layout_names, AT(environment_settings.layout)),
+              "irradiance.layout"),
+        moved(choice("environment_settings.latlong", latlong_names, AT(environment_settings.latlong)),
               "irradiance.latlong"),
         moved(triple("environment_settings.rotation_deg", AT(environment_settings.rotation_deg)),
               "irradiance.rotation_deg"),
         moved(number("environment_settings.exposure_stops", AT(environment_settings.exposure_stops)),
               "irradiance.exposure_stops"),
         moved(triple("environment_settings.tint", AT(environment_settings.tint)), "irradiance.tint"),
-        moved(choice<InvalidRadiance>("environment_settings.invalid_radiance",
-                                      {{"reject", InvalidRadiance::reject}, {"clamp", InvalidRadiance::clamp}},
-                                      AT(environment_settings.invalid_radiance)),
+        moved(choice("environment_settings.invalid_radiance", invalid_radiance_names,
+                     AT(environment_settings.invalid_radiance)),
               "irradiance.invalid_radiance"),
+    };
+}
+
+std::vector<Field> irradiance_fields() {
+    return {
         integer("irradiance.face_size", AT(irradiance.face_size)),
         integer("irradiance.specular_maps", AT(irradiance.specular_maps)),
-        choice<I>("irradiance.method", {{"exact", I::exact}, {"sh", I::sh}}, AT(irradiance.method)),
+        choice("irradiance.method", irradiance_method_names, AT(irradiance.method)),
         integer_or_auto("irradiance.sh_bands.diffuse", AT(irradiance.sh_bands_diffuse)),
         integer_or_auto("irradiance.sh_bands.specular", AT(irradiance.sh_bands_specular)),
         number("irradiance.sh_error", AT(irradiance.sh_error)),
         boolean("irradiance.clamp_negative", AT(irradiance.clamp_negative)),
         lights("irradiance.lights"),
-        string_list("outputs", AT(outputs)),
     };
+}
+
+std::vector<Field> make_fields() {
+    std::vector<Field> fields;
+    for (auto block : {hair_fields, fiber_fields, environment_fields, irradiance_fields})
+        for (Field& field : block()) fields.push_back(std::move(field));
+    fields.push_back(string_list("outputs", AT(outputs)));
+    return fields;
 }
 #undef AT
 

@@ -123,7 +123,8 @@ Json environment_facts(const fs::path& file, Progress& progress) {
     EnvironmentSettings settings;
     settings.invalid_radiance = InvalidRadiance::clamp;  // so that every map can be looked at; counted below
     const EnvironmentMap map = read_environment(file, settings, progress);
-    Json facts{{"kind", "environment map"}, {"format", map.source_format}, {"layout", map.layout}};
+    Json facts{
+        {"kind", "environment map"}, {"format", map.source_format}, {"layout", std::string(name_of(map.layout))}};
     if (map.shape == EnvironmentShape::cube)
         facts["face_size"] = map.width;
     else

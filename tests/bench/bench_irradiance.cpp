@@ -90,14 +90,14 @@ void print_accuracy(int step) {
         const TexelSample sample = sample_texels(16, step);
         const std::vector<Vec3d> truth = sum_over_pixels(named.map, sample.tangents, 64, 9);
         IrradianceSettings settings = paper_maps(IrradianceMethod::exact);
-        const IrradianceMaps exact = bake_irradiance(named.map, settings, progress);
+        const IrradianceMaps exact = bake_irradiance(named.map, settings, {}, progress);
         settings.specular_maps = 33;
-        const IrradianceMaps fine = bake_irradiance(named.map, settings, progress);
+        const IrradianceMaps fine = bake_irradiance(named.map, settings, {}, progress);
         settings = paper_maps(IrradianceMethod::sh);
-        const IrradianceMaps sh = bake_irradiance(named.map, settings, progress);
+        const IrradianceMaps sh = bake_irradiance(named.map, settings, {}, progress);
         settings.sh_bands_diffuse = 3;
         settings.sh_bands_specular = 8;
-        const IrradianceMaps published = bake_irradiance(named.map, settings, progress);
+        const IrradianceMaps published = bake_irradiance(named.map, settings, {}, progress);
         const MapError e = compare(exact, sample.texels, truth), s = compare(sh, sample.texels, truth),
                        p = compare(published, sample.texels, truth);
         std::printf("%-24s | %7.4f | %9.3f %2d: %.3f<%.3f %2d: %.3f<%.3f | %6.2f < %5.2f %8.1f | %.1f, %.1f\n",
@@ -133,9 +133,9 @@ void print_speed() {
         const char* names[] = {"ten maps, exact",   "decode .hdr",     "decode .exr",         "34 maps, exact",
                                "ten maps, sh auto", "of them: lights", "SH, 8 bands (exact)", "SH, 24 bands"};
         const std::vector<Cost> costs =
-            best_costs(9, {[&] { bake_irradiance(map, nine, progress); }, [&] { decode(folder / "map.hdr"); },
-                           [&] { decode(folder / "map.exr"); }, [&] { bake_irradiance(map, {}, progress); },
-                           [&] { bake_irradiance(map, sh, progress); }, [&] { make_light_set(map, 64, progress); },
+            best_costs(9, {[&] { bake_irradiance(map, nine, {}, progress); }, [&] { decode(folder / "map.hdr"); },
+                           [&] { decode(folder / "map.exr"); }, [&] { bake_irradiance(map, {}, {}, progress); },
+                           [&] { bake_irradiance(map, sh, {}, progress); }, [&] { make_light_set(map, 64, progress); },
                            [&] { project_sh(map, 8, progress); }, [&] { project_sh(map, 24, progress); }});
         std::printf("%s, %zu lights\n", name_of(sky).data(), lights.size());
         for (std::size_t i = 0; i < costs.size(); ++i)

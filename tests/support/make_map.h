@@ -28,7 +28,7 @@ inline EnvironmentMap make_cube(int size, const std::function<Vec3d(const Vec3d&
                                 const std::array<double, 3>& rotation_deg = {}) {
     EnvironmentMap map;
     map.shape = EnvironmentShape::cube;
-    map.layout = "faces";
+    map.layout = EnvironmentLayout::faces;
     map.width = size;
     map.height = 6 * size;
     map.rotation = rotation_matrix(rotation_deg);

@@ -38,7 +38,7 @@ void save(const std::filesystem::path& file, const LabelledPicture& picture,
 EnvironmentMap read(const std::filesystem::path& path, const std::string& layout = "auto",
                     LatLong convention = LatLong::gltf, const std::array<double, 3>& rotation = {}) {
     EnvironmentSettings settings;
-    settings.layout = layout;
+    settings.layout = find_in(environment_layout_names, layout).value();
     settings.latlong = convention;
     settings.rotation_deg = rotation;
     Progress progress;
@@ -59,7 +59,7 @@ std::string refusal(const std::filesystem::path& path, const std::string& layout
 void expect_labelled(const EnvironmentMap& map, const Matrix3& rotation = rotation_matrix({})) {
     for (const Vec3d& d : labelled_directions())
         EXPECT_EQ(texel_towards(map, transform(rotation, d)), labelled_colour(d))
-            << map.layout << ": " << d.x << ' ' << d.y << ' ' << d.z;
+            << name_of(map.layout) << ": " << d.x << ' ' << d.y << ' ' << d.z;
 }
 
 TEST(LabelledCube, ItsColoursTellEveryDirectionOfTheTestApart) {
@@ -105,7 +105,7 @@ TEST(CubeLayout, EveryPictureOfTheLabelledCubeGivesTheSameCube) {
         save(folder / (name + ".exr"), labelled_picture(name, size, std::numeric_limits<float>::quiet_NaN()));
         for (const std::string& layout : {std::string("auto"), name}) {
             const EnvironmentMap map = read(folder / (name + ".exr"), layout);
-            EXPECT_EQ(map.layout, name);
+            EXPECT_EQ(name_of(map.layout), name);
             EXPECT_EQ(map.shape, EnvironmentShape::cube);
             EXPECT_EQ(map.width, size);
             EXPECT_EQ(map.height, 6 * size);
@@ -125,7 +125,7 @@ TEST(CubeLayout, SixFacesGiveTheSameCube) {
     for (const std::filesystem::path& path : {folder / "sky", folder / "sky" / "{face}.exr"})
         for (const std::string layout : {"auto", "faces"}) {
             const EnvironmentMap map = read(path, layout);
-            EXPECT_EQ(map.layout, "faces");
+            EXPECT_EQ(map.layout, EnvironmentLayout::faces);
             EXPECT_EQ(map.pixels, labelled_cube(size));
             expect_labelled(map);
         }
@@ -136,7 +136,7 @@ TEST(CubeLayout, LatLongMapsOfEveryConventionShowTheSameLabels) {
     for (const LatLong convention : {LatLong::gltf, LatLong::filament, LatLong::openexr}) {
         save(folder / "a.hdr", labelled_picture(name_of(convention), size));  // RGBE holds the colours exactly
         const EnvironmentMap map = read(folder / "a.hdr", "auto", convention);
-        EXPECT_EQ(map.layout, "latlong");
+        EXPECT_EQ(map.layout, EnvironmentLayout::latlong);
         expect_labelled(map);
     }
 }
@@ -202,7 +202,7 @@ TEST(CubeLayout, AConventionOfLatLongsIsNotUsedForACubeAndSaysSo) {
     const EnvironmentMap map = read(folder / "a.exr", "auto", LatLong::openexr);
     expect_labelled(map);
     ASSERT_EQ(map.warnings.size(), 1u);
-    EXPECT_NE(map.warnings[0].find("irradiance.latlong is openexr"), std::string::npos);
+    EXPECT_NE(map.warnings[0].find("environment_settings.latlong is openexr"), std::string::npos);
 }
 
 TEST(CubeLayout, ShapesAndLayoutsThatDoNotFitAreRefusedWithWhatIsKnown) {

@@ -28,13 +28,13 @@ TEST(CubeMap, TexelSolidAnglesSumToTheSphere) {
         EXPECT_NEAR(6 * std::accumulate(angles.begin(), angles.end(), 0.0), 4 * std::numbers::pi, 1e-12) << size;
     }
     const std::vector<double> angles = cube_texel_solid_angles(16);
-    // Spec, section 0: the largest texel (centre) over the smallest (corner) is 4.506, given to four digits.
+    // docs/math.md, "Solid angles": the largest texel (centre) over the smallest (corner) is 4.506, given to four digits.
     EXPECT_NEAR(*std::max_element(angles.begin(), angles.end()) / *std::min_element(angles.begin(), angles.end()),
                 4.506, 5e-4);
 }
 
 TEST(CubeMap, FacesAreOrientedAsTheDesignSays) {
-    // (a, b) = (0.5, 0.25) put into the design's table by hand; 1e-15 is rounding of the normalisation.
+    // (a, b) = (0.5, 0.25) put into the table of cube_map.h by hand; 1e-15 is rounding of the normalisation.
     const Vec3d expected[] = {{1, -0.25, -0.5}, {-1, -0.25, 0.5}, {0.5, 1, 0.25},
                               {0.5, -1, -0.25}, {0.5, -0.25, 1},  {-0.5, -0.25, -1}};
     for (int face = 0; face < cube_faces; ++face)

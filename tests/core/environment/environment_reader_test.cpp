@@ -253,14 +253,11 @@ TEST(EnvironmentReader, WrongSettingsAreUsageErrorsNamingTheField) {
         return "";
     };
     EnvironmentSettings settings;
-    settings.layout = "cross";
-    EXPECT_EQ(field_of(settings), "irradiance.layout");
-    settings = {};
     settings.tint = {1, -1, 1};
-    EXPECT_EQ(field_of(settings), "irradiance.tint");
+    EXPECT_EQ(field_of(settings), "environment_settings.tint");
     settings = {};
     settings.exposure_stops = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_EQ(field_of(settings), "irradiance.exposure_stops");
+    EXPECT_EQ(field_of(settings), "environment_settings.exposure_stops");
 }
 
 TEST(EnvironmentReader, ACancelledReadStops) {

@@ -34,7 +34,7 @@ TEST(SphericalHarmonics, TheFirstBandsHaveTheSpecifiedOrderAndSign) {
     std::vector<double> y(9);
     ShBasis(3).evaluate(d, y);
     const double one = std::sqrt(3 / (4 * pi)), two = std::sqrt(15 / (4 * pi));
-    // Closed forms without Condon-Shortley phase (spec, section 0); 1e-15: rounding.
+    // Closed forms without Condon-Shortley phase; 1e-15: rounding.
     const double expected[] = {std::sqrt(1 / (4 * pi)),
                                one * d.y,
                                one * d.z,

@@ -21,13 +21,14 @@ void expect_the_issues_accuracy(const EnvironmentMap& map) {
     settings.specular_maps = 9;
     const testing::TexelSample sample = testing::sample_texels(16, 23);  // 67 texels; 23 is prime to the rows
     const std::vector<Vec3d> truth = testing::sum_over_pixels(map, sample.tangents, 64, 9);
-    const testing::MapError exact = testing::compare(bake_irradiance(map, settings, progress), sample.texels, truth);
+    const testing::MapError exact =
+        testing::compare(bake_irradiance(map, settings, {}, progress), sample.texels, truth);
     EXPECT_LE(exact.all, 0.003);
     EXPECT_LE(exact.diffuse, 0.003);
     EXPECT_LE(exact.specular, 0.003);
 
     settings.method = IrradianceMethod::sh;
-    const IrradianceMaps sh = bake_irradiance(map, settings, progress);
+    const IrradianceMaps sh = bake_irradiance(map, settings, {}, progress);
     const testing::MapError error = testing::compare(sh, sample.texels, truth);
     EXPECT_LE(error.all, 0.01);
     EXPECT_LE(error.all, std::max(sh.predicted_error_diffuse, sh.predicted_error_specular));

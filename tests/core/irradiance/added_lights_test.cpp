@@ -10,6 +10,7 @@
 #include "core/base/random.h"
 #include "core/fiber/kajiya_kay.h"
 #include "core/sample/sky_generator.h"
+#include "tests/support/kajiya_kay.h"
 #include "tests/support/make_map.h"
 
 namespace hairbake {
@@ -36,10 +37,9 @@ IrradianceMaps bake(const EnvironmentMap& map, std::vector<DirectionalLight> lig
     settings.method = method;
     settings.face_size = size;
     settings.specular_maps = maps;
-    settings.exponent = exponent;
     settings.lights = std::move(lights);
     Progress progress;
-    return bake_irradiance(map, settings, progress);
+    return bake_irradiance(map, settings, testing::kajiya_kay(exponent), progress);
 }
 
 const CubeTexels& map_of(const IrradianceMaps& m, int k) { return k == 0 ? m.diffuse : m.specular[k - 1]; }
@@ -181,7 +181,7 @@ TEST(AddedLights, TheInterpolationBoundHoldsWithThem) {
             settings.specular_maps = maps;
             settings.lights = {light};
             Progress progress;
-            const IrradianceMaps m = bake_irradiance(black(), settings, progress);
+            const IrradianceMaps m = bake_irradiance(black(), settings, {}, progress);
             double worst = 0;
             for (std::size_t texel = 0; texel < m.diffuse.size(); ++texel) {
                 const int i = int(texel) % (n * n);

@@ -17,7 +17,7 @@ IrradianceMaps bake(const EnvironmentMap& map, IrradianceMethod method = Irradia
     settings.face_size = 8;
     settings.specular_maps = 9;
     Progress progress;
-    return bake_irradiance(map, settings, progress);
+    return bake_irradiance(map, settings, {}, progress);
 }
 
 // A cube with the light of the generated sky: every texel takes the lat-long texel that its centre falls into.

@@ -16,7 +16,7 @@ using testing::sample_texels;
 
 IrradianceMaps bake(const EnvironmentMap& map, const IrradianceSettings& settings) {
     Progress progress;
-    return bake_irradiance(map, settings, progress);
+    return bake_irradiance(map, settings, {}, progress);
 }
 
 IrradianceSettings small(IrradianceMethod method) {
@@ -131,7 +131,7 @@ TEST(Invariance, ThreadsDoNotChangeABit) {
 }
 
 TEST(Invariance, TheReportedHarmonicsAreThoseOfTheWorld) {
-    // The first four coefficients of a sun: flux * (1, sqrt 3 y, sqrt 3 z, sqrt 3 x) / sqrt(4 pi) (spec, section 0).
+    // The first four coefficients of a sun: flux * (1, sqrt 3 y, sqrt 3 z, sqrt 3 x) / sqrt(4 pi).
     const EnvironmentMap map = testing::one_texel_sun(128, 90, 20, {1, 2, 3}, LatLong::filament, {0, 30, 60});
     const Vec3d d = direction_of(map, {90.5, 20.5});
     for (const IrradianceMethod method : methods) {

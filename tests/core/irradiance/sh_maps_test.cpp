@@ -7,6 +7,7 @@
 
 #include "core/fiber/kajiya_kay.h"
 #include "core/sample/sky_generator.h"
+#include "tests/support/kajiya_kay.h"
 #include "tests/support/make_map.h"
 #include "tests/support/pixel_sum.h"
 #include "tests/support/transfer_matrix.h"
@@ -34,7 +35,7 @@ TEST(ShMaps, TheyEqualThePublishedTransferMatrix) {
     IrradianceSettings settings = published();
     settings.clamp_negative = false;
     settings.face_size = 4;
-    const IrradianceMaps maps = bake_irradiance(map, settings, progress);
+    const IrradianceMaps maps = bake_irradiance(map, settings, {}, progress);
     const testing::TexelSample sample = testing::sample_texels(4, 7);
     const std::vector<Vec3d> diffuse = testing::transfer_matrix_map(
         map, sample.tangents, 3, [](double c) { return std::sqrt(std::max(0.0, 1 - c * c)); });
@@ -55,7 +56,7 @@ TEST(ShMaps, ManyBandsAgreeWithTheSumOverPixels) {
     settings.sh_bands_diffuse = settings.sh_bands_specular = 64;
     settings.face_size = 8;
     const EnvironmentMap map = generate_sky(Sky::sunny, 256, 2);
-    const IrradianceMaps maps = bake_irradiance(map, settings, progress);
+    const IrradianceMaps maps = bake_irradiance(map, settings, {}, progress);
     const testing::TexelSample sample = testing::sample_texels(8, 5);
     const testing::MapError error =
         testing::compare(maps, sample.texels, testing::sum_over_pixels(map, sample.tangents, 64, 9));
@@ -71,9 +72,9 @@ TEST(ShMaps, NegativeValuesAreClampedAndTheirMassReported) {
     Progress progress;
     const EnvironmentMap map = testing::one_texel_sun(128, 40, 30, {1, 1, 1});
     IrradianceSettings settings = published();
-    const IrradianceMaps clamped = bake_irradiance(map, settings, progress);
+    const IrradianceMaps clamped = bake_irradiance(map, settings, {}, progress);
     settings.clamp_negative = false;
-    const IrradianceMaps raw = bake_irradiance(map, settings, progress);
+    const IrradianceMaps raw = bake_irradiance(map, settings, {}, progress);
     const std::vector<double> solid_angles = cube_texel_solid_angles(16);
     for (int m = 0; m <= 8; ++m) {
         double mass = 0;
@@ -84,7 +85,7 @@ TEST(ShMaps, NegativeValuesAreClampedAndTheirMassReported) {
                 ASSERT_EQ(clamped.specular[m][i][c], std::max(0.0f, value));
             }
         }
-        EXPECT_GT(mass, 0.01);  // eight bands of cos^64 ring (spec, section 4: down to -0.35)
+        EXPECT_GT(mass, 0.01);  // eight bands of cos^64 ring (docs/math.md, "Spherical harmonics": down to -0.35)
         EXPECT_NEAR(clamped.specular_statistics[m].clamped_negative_mass, mass, 1e-6 * mass);
         EXPECT_NEAR(raw.specular_statistics[m].clamped_negative_mass, mass, 1e-6 * mass);
         EXPECT_GE(clamped.specular_statistics[m].minimum.x, 0);
@@ -100,7 +101,7 @@ TEST(ShMaps, AutoNeedsMoreBandsForASmallerErrorAndASharperLobe) {
     int before = 0;
     for (const double target : {0.05, 0.01, 0.002}) {
         settings.sh_error = target;
-        const IrradianceMaps maps = bake_irradiance(map, settings, progress);
+        const IrradianceMaps maps = bake_irradiance(map, settings, {}, progress);
         EXPECT_GT(maps.sh_bands_specular, before);
         // The choice is made against the largest value on a grid of its own, which may differ by a percent.
         EXPECT_LE(maps.predicted_error_specular, 1.02 * target);
@@ -108,12 +109,10 @@ TEST(ShMaps, AutoNeedsMoreBandsForASmallerErrorAndASharperLobe) {
         before = maps.sh_bands_specular;
     }
     settings.sh_error = 0.01;
-    const int at64 = bake_irradiance(map, settings, progress).sh_bands_specular;
-    settings.exponent = 256;
-    EXPECT_GT(bake_irradiance(map, settings, progress).sh_bands_specular, at64);
-    settings.exponent = 4096;
+    const int at64 = bake_irradiance(map, settings, {}, progress).sh_bands_specular;
+    EXPECT_GT(bake_irradiance(map, settings, testing::kajiya_kay(256), progress).sh_bands_specular, at64);
     settings.sh_error = 1e-4;
-    const IrradianceMaps most = bake_irradiance(map, settings, progress);
+    const IrradianceMaps most = bake_irradiance(map, settings, testing::kajiya_kay(4096), progress);
     EXPECT_EQ(most.sh_bands_specular, 128);
     EXPECT_GT(most.predicted_error_specular, 1e-4);
     bool warned = false;

@@ -24,7 +24,7 @@ MapSet labelled_maps(int size) {
 void expect_labelled(const EnvironmentMap& map) {
     for (const Vec3d& d : labelled_directions())
         EXPECT_LT(length(texel_towards(map, d) - labelled_colour(d)), 1e-6)
-            << map.layout << ": " << d.x << ' ' << d.y << ' ' << d.z;
+            << name_of(map.layout) << ": " << d.x << ' ' << d.y << ' ' << d.z;
 }
 
 TEST(LabelledMaps, StripAndLatLongShowEveryDirectionItsOwnLabel) {
@@ -36,11 +36,11 @@ TEST(LabelledMaps, StripAndLatLongShowEveryDirectionItsOwnLabel) {
     write_map_exr(maps, folder / "", progress);
     for (const char* name : {"diffuse", "specular_00"}) {
         const EnvironmentMap strip = read_environment(folder / (std::string(name) + ".exr"), {}, progress);
-        EXPECT_EQ(strip.layout, "vertical_strip");
+        EXPECT_EQ(strip.layout, EnvironmentLayout::vertical_strip);
         EXPECT_EQ(strip.pixels, maps.lobes[0].cubes[0]);
         expect_labelled(strip);
         const EnvironmentMap latlong = read_environment(folder / (std::string(name) + "_latlong.exr"), {}, progress);
-        EXPECT_EQ(latlong.layout, "latlong");
+        EXPECT_EQ(latlong.layout, EnvironmentLayout::latlong);
         expect_labelled(latlong);
     }
 }

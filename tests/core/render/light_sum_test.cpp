@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/fiber/kajiya_kay.h"
+#include "tests/support/kajiya_kay.h"
 #include "tests/support/make_map.h"
 
 namespace hairbake {
@@ -36,21 +37,23 @@ TEST(LightSum, IsTheSumOfTheExactKernelsForAnyExponentAndNumberOfLights) {
     for (const int count : {0, 1, 255, 256, 257, 3000})
         for (const double exponent : {0.0, 0.5, 1.0, 5.0, 64.0, 77.3, 4096.0}) {
             const LightSet lights = random_lights(count);
-            const LightSum sum(lights, exponent);
+            const auto model = testing::kajiya_kay_model(exponent);
+            const LightSum sum(lights, *model);
             const Vec3d t = random_direction(random), eye = random_direction(random);
-            KernelSums expected;
+            LobeSums expected{};
             for (std::size_t i = 0; i < lights.size(); ++i) {
                 const Vec3d l = normalized(Vec3d(lights.x[i], lights.y[i], lights.z[i]));
                 const Vec3d flux(lights.flux[4 * i], lights.flux[4 * i + 1], lights.flux[4 * i + 2]);
-                expected.diffuse += flux * kajiya_kay_diffuse(t, l);
-                expected.specular += flux * kajiya_kay_specular(t, l, eye, exponent);
+                expected[diffuse_lobe] += flux * kajiya_kay_diffuse(t, l);
+                expected[specular_lobe] += flux * kajiya_kay_specular(t, l, eye, exponent);
             }
-            const KernelSums found = sum.sum(t, eye);
+            const LobeSums found = sum.sum({t, eye});
             const double lobe = 1e-5 + 5e-7 * exponent;
-            EXPECT_NEAR(found.diffuse.x, expected.diffuse.x, 1e-5 * expected.diffuse.x);
-            EXPECT_NEAR(found.diffuse.z, expected.diffuse.z, 1e-5 * expected.diffuse.z);
+            EXPECT_NEAR(found[diffuse_lobe].x, expected[diffuse_lobe].x, 1e-5 * expected[diffuse_lobe].x);
+            EXPECT_NEAR(found[diffuse_lobe].z, expected[diffuse_lobe].z, 1e-5 * expected[diffuse_lobe].z);
             // What lies below 1e-12 of the peak is left out.
-            EXPECT_NEAR(found.specular.y, expected.specular.y, lobe * expected.specular.y + 1e-12 * count)
+            EXPECT_NEAR(found[specular_lobe].y, expected[specular_lobe].y,
+                        lobe * expected[specular_lobe].y + 1e-12 * count)
                 << count << " lights, exponent " << exponent;
         }
 }
@@ -59,7 +62,8 @@ TEST(LightSum, OfAWhiteSkyLightsASurfaceWithPi) {
     // Integral of the cosine over a hemisphere. Texels of 2.8 degrees: the midpoint rule errs by 1e-4 of it, and at the
     // horizon, where the cosine has a kink, by about (half a texel)^2 * circumference / 8 = 5e-4.
     const EnvironmentMap white = testing::make_map(128, [](const Vec3d&) { return Vec3d(1); });
-    const LightSum sum(make_light_set(white, 64, Progress()), 1);
+    const auto model = testing::kajiya_kay_model(1);
+    const LightSum sum(make_light_set(white, 64, Progress()), *model);
     Random random(1);
     for (int k = 0; k < 10; ++k) EXPECT_NEAR(sum.irradiance(random_direction(random)).y, pi, 6e-4 * pi);
 }

@@ -9,6 +9,7 @@
 #include "core/reference/tracer.h"
 #include "core/render/fiber_lighting.h"
 #include "core/visibility/direction_set.h"
+#include "tests/support/kajiya_kay.h"
 #include "tests/support/make_map.h"
 #include "tests/support/strand_models.h"
 
@@ -29,8 +30,10 @@ EnvironmentMap soft_sky() {
     });
 }
 
+const std::unique_ptr<const FiberModel> lobes_of_16 = testing::kajiya_kay_model(exponent);
+
 LightSum lights_of(const EnvironmentMap& map, int resolution = 64) {
-    return LightSum(make_light_set(map, resolution, Progress()), exponent);
+    return LightSum(make_light_set(map, resolution, Progress()), *lobes_of_16);
 }
 
 std::vector<StrandPoint> random_points(int count) {
@@ -38,8 +41,7 @@ std::vector<StrandPoint> random_points(int count) {
     std::vector<StrandPoint> points;
     for (int k = 0; k < count; ++k) {
         StrandPoint point;
-        point.tangent = testing::random_direction(random);
-        point.to_eye = testing::random_direction(random);
+        point.view = {testing::random_direction(random), testing::random_direction(random)};
         point.seed = random.next_u64();
         points.push_back(point);
     }
@@ -75,16 +77,15 @@ TEST(BakedMode, ConvergesToBruteForceWithTheSizeAndNumberOfTheMaps) {
     std::vector<double> diffuse, specular;
     for (const int level : {0, 1, 2, 3}) {
         IrradianceSettings settings;
-        settings.exponent = exponent;
         settings.face_size = 4 << level;
         settings.specular_maps = (8 << level) + 1;
         Progress progress;
-        const IrradianceMaps maps = bake_irradiance(sky, settings, progress);
+        const IrradianceMaps maps = bake_irradiance(sky, settings, testing::kajiya_kay(exponent), progress);
         const auto baked = light(*baked_lighting(open, maps), points);
         double d = 0, s = 0;
         for (std::size_t i = 0; i < points.size(); ++i) {
-            d += std::pow(length(baked[i].diffuse - truth[i].diffuse), 2);
-            s += std::pow(length(baked[i].specular - truth[i].specular), 2);
+            d += std::pow(length(baked[i].lobes[diffuse_lobe] - truth[i].lobes[diffuse_lobe]), 2);
+            s += std::pow(length(baked[i].lobes[specular_lobe] - truth[i].lobes[specular_lobe]), 2);
         }
         diffuse.push_back(std::sqrt(d));
         specular.push_back(std::sqrt(s));
@@ -112,8 +113,10 @@ TEST(ReferenceMode, IsBruteForceWhereNothingHidesTheLight) {
     for (const int samples : {1, 16}) {
         const auto reference = light(*reference_lighting(VertexRays(scene, progress), open, lights, samples), points);
         for (std::size_t i = 0; i < points.size(); ++i) {
-            EXPECT_LT(length(reference[i].diffuse - brute[i].diffuse), 2e-5 * length(brute[i].diffuse));
-            EXPECT_LT(length(reference[i].specular - brute[i].specular), 2e-5 * length(brute[i].specular));
+            EXPECT_LT(length(reference[i].lobes[diffuse_lobe] - brute[i].lobes[diffuse_lobe]),
+                      2e-5 * length(brute[i].lobes[diffuse_lobe]));
+            EXPECT_LT(length(reference[i].lobes[specular_lobe] - brute[i].lobes[specular_lobe]),
+                      2e-5 * length(brute[i].lobes[specular_lobe]));
             EXPECT_NEAR(reference[i].transmittance, 1, 2e-5);
         }
     }
@@ -138,7 +141,7 @@ TEST(ReferenceMode, DrawsOtherLightsForAnotherNumberOfThem) {
         std::vector<double> values;
         for (const FiberLight& one :
              light(*reference_lighting(VertexRays(scene, progress), open, lights, count), points))
-            values.push_back(one.diffuse.y);
+            values.push_back(one.lobes[diffuse_lobe].y);
         return values;
     };
     const auto variance = [](const std::vector<double>& values) {
@@ -163,7 +166,7 @@ TEST(ReferenceMode, AgreesWithTheSumOverAShadowRayToEveryLight) {
     Progress progress;
     const StrandScene scene(strands, progress);
     const LightSet set = make_light_set(testing::noise_map(64, 7), 6, Progress());
-    const LightSum lights(set, exponent);
+    const LightSum lights(set, *lobes_of_16);
     auto points = random_points(4);
     for (std::size_t i = 0; i < points.size(); ++i) points[i].place = {std::uint32_t(25 * i + 1), 0.25};
     const std::vector<float> half(strands.vertex_count(), 0.5f);
@@ -178,12 +181,12 @@ TEST(ReferenceMode, AgreesWithTheSumOverAShadowRayToEveryLight) {
             const auto seen = trace_transmittance(scene, ends, direction, progress);
             const double t = 0.75 * double(seen[0]) + 0.25 * double(seen[1]);
             const Vec3d flux(lights.flux(k));
-            diffuse += flux * (t * kajiya_kay_diffuse(points[i].tangent, l));
-            unhidden += flux * kajiya_kay_diffuse(points[i].tangent, l);
-            specular += flux * (t * kajiya_kay_specular(points[i].tangent, l, points[i].to_eye, exponent));
+            diffuse += flux * (t * kajiya_kay_diffuse(points[i].view.tangent, l));
+            unhidden += flux * kajiya_kay_diffuse(points[i].view.tangent, l);
+            specular += flux * (t * kajiya_kay_specular(points[i].view.tangent, l, points[i].view.to_eye, exponent));
         }
-        EXPECT_LT(length(found[i].diffuse - diffuse), 4 * 0.5 / 200 * length(unhidden));
-        EXPECT_LT(length(found[i].specular - specular), 4 * 0.5 / 200 * std::max(length(specular), 0.3));
+        EXPECT_LT(length(found[i].lobes[diffuse_lobe] - diffuse), 4 * 0.5 / 200 * length(unhidden));
+        EXPECT_LT(length(found[i].lobes[specular_lobe] - specular), 4 * 0.5 / 200 * std::max(length(specular), 0.3));
         EXPECT_GT(length(diffuse), 0.02 * length(unhidden));  // neither all hidden
         EXPECT_LT(length(diffuse), 0.98 * length(unhidden));  // nor all open
     }
@@ -202,8 +205,10 @@ TEST(DirectionalMode, OfAConstantTransmittanceIsBruteForceWithA) {
     for (const DirectionalTransmittance& transmittance : {with_sh, with_cone}) {
         const auto found = light(*directional_lighting(transmittance, lights), points);
         for (std::size_t i = 0; i < points.size(); ++i) {
-            EXPECT_LT(length(found[i].diffuse - truth[i].diffuse), 1e-5 * length(truth[i].diffuse));
-            EXPECT_LT(length(found[i].specular - truth[i].specular), 1e-5 * length(truth[i].specular));
+            EXPECT_LT(length(found[i].lobes[diffuse_lobe] - truth[i].lobes[diffuse_lobe]),
+                      1e-5 * length(truth[i].lobes[diffuse_lobe]));
+            EXPECT_LT(length(found[i].lobes[specular_lobe] - truth[i].lobes[specular_lobe]),
+                      1e-5 * length(truth[i].lobes[specular_lobe]));
             EXPECT_NEAR(found[i].transmittance, 0.3, 1e-5);
         }
     }
@@ -213,7 +218,7 @@ TEST(DirectionalMode, PutsTheHarmonicsTransmittanceInsideTheSumAndClampsIt) {
     // T(l) = c0 Y_00 + c1 Y_1,0 = 0.5 + 0.8 z, clamped to [0, 1]: Y_00 = 1 / (2 sqrt(pi)), Y_1,0 = sqrt(3 / (4 pi)) z,
     // index 2. The truth is summed here in double.
     const LightSet set = make_light_set(soft_sky(), 16, Progress());
-    const LightSum lights(set, exponent);
+    const LightSum lights(set, *lobes_of_16);
     const auto points = random_points(20);
     const float c0 = float(0.5 * 2 * std::sqrt(pi)), c2 = float(0.8 / std::sqrt(3 / (4 * pi)));
     const std::vector<float> a(2, 0.5f), sh{c0, 0, c2, 0, c0, 0, c2, 0};
@@ -224,12 +229,12 @@ TEST(DirectionalMode, PutsTheHarmonicsTransmittanceInsideTheSumAndClampsIt) {
         for (std::size_t k = 0; k < set.size(); ++k) {
             const Vec3d l = lights.direction(k);
             const double t = std::clamp(0.5 + 0.8 * l.z, 0.0, 1.0);
-            diffuse += Vec3d(lights.flux(k)) * (t * kajiya_kay_diffuse(points[i].tangent, l));
-            specular +=
-                Vec3d(lights.flux(k)) * (t * kajiya_kay_specular(points[i].tangent, l, points[i].to_eye, exponent));
+            diffuse += Vec3d(lights.flux(k)) * (t * kajiya_kay_diffuse(points[i].view.tangent, l));
+            specular += Vec3d(lights.flux(k)) *
+                        (t * kajiya_kay_specular(points[i].view.tangent, l, points[i].view.to_eye, exponent));
         }
-        EXPECT_LT(length(found[i].diffuse - diffuse), 2e-5 * length(diffuse));
-        EXPECT_LT(length(found[i].specular - specular), 4e-5 * length(specular) + 1e-6);
+        EXPECT_LT(length(found[i].lobes[diffuse_lobe] - diffuse), 2e-5 * length(diffuse));
+        EXPECT_LT(length(found[i].lobes[specular_lobe] - specular), 4e-5 * length(specular) + 1e-6);
     }
 }
 
@@ -247,7 +252,7 @@ TEST(BentConeTransmittance, HasTheMeanAWhereverTheConeCanHoldIt) {
             EXPECT_NEAR(mean, a, 0.003) << half_angle;
         }
     }
-    // Spec, section 10: half of the sphere open has |b| = 1/2, half-angle 90 degrees, and T is 1 inside.
+    // Half of the sphere open has |b| = 1/2, half-angle 90 degrees, and T is 1 inside.
     const BentCone half(0.5, axis * 0.25);
     EXPECT_NEAR(half.at(axis), 1, 1e-12);
     EXPECT_NEAR(half.at(-axis), 0, 1e-12);

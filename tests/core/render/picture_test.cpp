@@ -8,6 +8,7 @@
 #include "core/fiber/kajiya_kay.h"
 #include "core/render/pixel_samples.h"
 #include "core/render/renderer.h"
+#include "tests/support/kajiya_kay.h"
 #include "tests/support/make_map.h"
 #include "tests/support/strand_models.h"
 
@@ -23,7 +24,8 @@ struct Studio {
         : strands(std::move(geometry)),
           scene(strands, progress),
           hits(scene, nullptr),
-          lights(make_light_set(sky, 64, progress), exponent) {
+          fiber(testing::kajiya_kay_model(exponent)),
+          lights(make_light_set(sky, 64, progress), *fiber) {
         for (std::size_t v = 0; v < strands.vertex_count(); ++v) {
             const std::size_t from = strands.segments[v] == Segment::none ? v - 1 : v;
             tangents.push_back(normalized(strands.positions[from + 1] - strands.positions[from]));
@@ -32,7 +34,16 @@ struct Studio {
 
     std::vector<Vec3f> render(const FiberLighting& lighting, const Camera& camera, const FrameSettings& frame,
                               const EnvironmentMap* background = nullptr) {
-        RenderScene shown{hits, tangents, strands, lighting, kd, ks, nullptr, {}, background};
+        const RenderScene shown{.hits = hits,
+                                .tangents = tangents,
+                                .strands = strands,
+                                .lighting = lighting,
+                                .lobes = fiber->lobes(),
+                                .kd = kd,
+                                .ks = ks,
+                                .mesh_lights = nullptr,
+                                .mesh_albedo = {},
+                                .background = background};
         return render_frame(shown, camera, frame, progress);
     }
 
@@ -40,6 +51,7 @@ struct Studio {
     StrandGeometry strands;
     StrandScene scene;
     FirstHits hits;
+    std::unique_ptr<const FiberModel> fiber;
     LightSum lights;
     std::vector<Vec3f> tangents;
     Vec3d kd{0.02, 0.05, 0.08}, ks{0.3, 0.2, 0.1};
@@ -70,7 +82,7 @@ TEST(Picture, OfHairUnderAWhiteSkyIsKdPiSquaredPlusKsSOfThePixelsAngle) {
     const EnvironmentMap white = testing::make_map(128, [](const Vec3d&) { return Vec3d(1); });
     Studio studio(model.geometry(), white);
     IrradianceSettings settings;
-    const IrradianceMaps maps = bake_irradiance(white, settings, studio.progress);
+    const IrradianceMaps maps = bake_irradiance(white, settings, {}, studio.progress);
     const Camera camera = look_at({0, 0, 10}, {6, 0, 4}, {0, 1, 0}, 20);
     const FrameSettings frame = frame_of(24, 1);
     const auto brute = studio.render(*brute_lighting(studio.open, studio.lights), camera, frame);
@@ -150,7 +162,7 @@ TEST(Picture, IsTheSameToTheLastBitForAnyNumberOfThreadsAndAnotherForAnotherSeed
 class CountingLighting : public FiberLighting {
 public:
     void light(std::span<const StrandPoint> points, std::span<FiberLight> result, const Progress&) const override {
-        for (FiberLight& light : result) light = {1, Vec3d(1), {}};
+        for (FiberLight& light : result) light = {1, {Vec3d(1)}};
         most = std::max(most, points.size());
         all += points.size();
     }

@@ -63,7 +63,7 @@ TEST(RequestJson, FirstPlacesAreTakenWithAWarningEach) {
     BakeRequest request;
     const auto warnings =
         merge_json(request, R"({"irradiance": {"exponent": 5, "tint": [1, 2, 3], "face_size": 8}})", "old.json");
-    EXPECT_EQ(request.irradiance.exponent, 5);
+    EXPECT_EQ(request.fiber.kajiya_kay.exponent, 5);
     EXPECT_EQ(request.environment_settings.tint[2], 3);
     EXPECT_EQ(warnings, (std::vector<std::string>{
                             "old.json: irradiance.exponent is deprecated: the field is now fiber.kajiya_kay.exponent",
@@ -219,7 +219,7 @@ TEST(Presets, PaperIsThePublishedSetting) {
     EXPECT_EQ(request.transmittance.directions, 100);
     EXPECT_EQ(request.transmittance.direction_set, DirectionSet::random);
     EXPECT_EQ(request.irradiance.specular_maps, 9);
-    EXPECT_EQ(request.irradiance.exponent, 64);
+    EXPECT_EQ(request.fiber.kajiya_kay.exponent, 64);
     EXPECT_EQ(request.irradiance.face_size, 16);
     EXPECT_EQ(request.irradiance.method, IrradianceMethod::sh);
     EXPECT_EQ(request.irradiance.sh_bands_diffuse, 3);   // 9 coefficients

@@ -133,7 +133,7 @@ TEST(Request, EveryEndOfARangeIsAllowedAndBeyondIsNot) {
          [](BakeRequest& r, double v) { r.transmittance.reference_vertices = int(v); }, 0, 100000, 1},
         {"irradiance.face_size", [](BakeRequest& r, double v) { r.irradiance.face_size = int(v); }, 4, 256, 1},
         {"irradiance.specular_maps", [](BakeRequest& r, double v) { r.irradiance.specular_maps = int(v); }, 2, 257, 1},
-        {"fiber.kajiya_kay.exponent", [](BakeRequest& r, double v) { r.irradiance.exponent = v; }, 0, 4096, 1e-6},
+        {"fiber.kajiya_kay.exponent", [](BakeRequest& r, double v) { r.fiber.kajiya_kay.exponent = v; }, 0, 4096, 1e-6},
         {"irradiance.sh_bands.diffuse", [](BakeRequest& r, double v) { r.irradiance.sh_bands_diffuse = int(v); }, 1,
          128, 1},
         {"irradiance.sh_bands.specular", [](BakeRequest& r, double v) { r.irradiance.sh_bands_specular = int(v); }, 1,

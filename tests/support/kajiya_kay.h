@@ -1,0 +1,14 @@
+// The request's fibre block, and models, of one exponent.
+#pragma once
+
+#include "core/fiber/fiber_model.h"
+
+namespace hairbake::testing {
+
+inline FiberSettings kajiya_kay(double exponent) { return {FiberModelKind::kajiya_kay, {exponent}}; }
+
+inline std::unique_ptr<const FiberModel> kajiya_kay_model(double exponent) {
+    return make_fiber_model(kajiya_kay(exponent));
+}
+
+}  // namespace hairbake::testing
