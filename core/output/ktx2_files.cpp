@@ -96,7 +96,10 @@ Metadata file_metadata(const MapSet& maps, const std::string& map, double scale,
 
 std::string angles_text(const MapLobe& lobe) {
     std::string angles;
-    for (const double angle : lobe.theta_prime_deg) angles += (angles.empty() ? "" : " ") + number_text(angle);
+    for (const double angle : lobe.theta_prime_deg) {
+        if (!angles.empty()) angles += ' ';
+        angles += number_text(angle);
+    }
     return angles;
 }
 

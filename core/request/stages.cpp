@@ -53,9 +53,7 @@ bool reads(const Stage& stage, const RequestField& field) {
 /// "fiber.kajiya_kay.exponent" is a parameter of the model "kajiya-kay"; other fields are of no model.
 bool of_another_model(const RequestField& field, const BakeRequest& request) {
     if (!in_block(field.path, "fiber") || field.path == "fiber.model") return false;
-    std::string model = find_field("fiber.model")->get(request).get<std::string>();
-    std::replace(model.begin(), model.end(), '-', '_');
-    return !in_block(field.path, "fiber." + model);
+    return !in_block(field.path, "fiber." + std::string(entry_of(request.fiber.model).block));
 }
 
 /// Canonical JSON (sorted keys, one line) of the settings that the stage reads, fields at their first places.
