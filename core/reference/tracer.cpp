@@ -19,7 +19,7 @@ namespace {
 
 constexpr unsigned kPacket = 16;
 
-/// Where rays start: at a vertex of the hair, or at a point of a surface.
+/// The start of rays: a vertex of the hair, or a point of a surface.
 struct RayOrigin {
     static constexpr std::uint32_t no_vertex = ~0u;
     Vec3f position;
@@ -118,7 +118,7 @@ unsigned past_occluder(const StrandScene& scene, std::span<const RayOrigin> orig
     return seen;
 }
 
-/// What may stop the rays of one call.
+/// The obstacles of all rays of one call.
 struct Obstacles {
     const StrandScene& scene;
     bool opaque;    ///< all strands are opaque

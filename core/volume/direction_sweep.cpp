@@ -101,7 +101,7 @@ struct Axis {
     }
 };
 
-/// What one thread fills and needs for all its walks along an axis.
+/// Sums and buffers of one thread for all its walks along an axis.
 struct Worker {
     std::vector<std::vector<SweepSums>> sums;     ///< [set][reader]
     std::vector<std::vector<std::uint8_t>> seen;  ///< [set], SweepStop::seen

@@ -10,7 +10,7 @@
 
 namespace hairbake {
 
-/// What a reader's sums come to at each point of its set. Integers add up to the same whatever their order.
+/// The sums of one reader at each point of its set. Integers add up to the same in any order.
 class FixedPointSums {
 public:
     FixedPointSums(std::size_t points, std::span<const float> scales)

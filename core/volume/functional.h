@@ -14,7 +14,7 @@
 
 namespace hairbake {
 
-/// What a functional is made from. Refers to its parts, which must outlive the functional.
+/// The input of a functional. Refers to its parts, which must outlive the functional.
 struct FunctionalInput {
     const TransmittanceScene& scene;
     const TransmittanceSettings& settings;

@@ -1,4 +1,4 @@
-// Where the voxels lie: the map between model space and grid space.
+// The place of the voxels: the map between model space and grid space.
 #pragma once
 
 #include <array>

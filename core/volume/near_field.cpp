@@ -19,7 +19,7 @@
 #define HAIRBAKE_NEAR_FIELD_INPUT
 namespace hairbake {
 
-/// What the correction of every brick reads.
+/// The input of the correction, the same for every brick.
 struct NearFieldInput {
     const StrandGeometry& strands;
     const HairVolume& volume;

@@ -17,7 +17,7 @@
 #define HAIRBAKE_SWEEP_WALK
 namespace hairbake {
 
-/// What one walk through the slices reads.
+/// The input of one walk through the slices.
 struct Walk {
     const SliceLayout& layout;
     std::span<const std::uint32_t> directions;
@@ -81,7 +81,7 @@ void add_slab(const SliceLayout& layout, std::uint32_t tile, std::size_t at, int
     }
 }
 
-/// Where the rays stored from `base` on pass position u of slice position s: ray i takes [i, i + 1).
+/// Place of position (u, s) among the rays stored from `base` on: ray i takes [i, i + 1).
 template <class V>
 HWY_INLINE V ray_at(V u, V s, float slope, int base) {
     const F d;

@@ -1,4 +1,4 @@
-// What the sweep knows of a functional of the transmittance: how many sums it keeps at a point, and how it adds to
+// A functional of the transmittance, for the sweep: how many sums it keeps at a point, and how it adds to
 // them.
 #pragma once
 

@@ -16,7 +16,7 @@ namespace hairbake {
 
 class DensityGrid;
 
-/// What the transmittance stage reads. Refers to its parts, which must outlive it.
+/// The input of the transmittance stage. Refers to its parts, which must outlive it.
 struct TransmittanceScene {
     const StrandGeometry& strands;
     const TriangleMesh* occluder = nullptr;  ///< stops light completely
