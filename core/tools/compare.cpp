@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <span>
 #include <string>
 #include <vector>
@@ -63,9 +65,12 @@ Json statistics(std::span<const float> first, std::span<const float> second) {
             {"rms_over_largest", largest > 0 ? rms / largest : rms}};
 }
 
-/// How many cube maps an array [count, 6, n, n, 3] holds; 0 for any other shape.
-std::size_t maps_in(const std::vector<std::size_t>& shape) {
-    return shape.size() == 5 && shape[1] == 6 && shape[2] == shape[3] && shape[4] == 3 ? shape[0] : 0;
+/// How many cube maps an array [..., 6, n, n, 3] with leading axes holds; 0 for any other shape.
+std::size_t maps_in(std::span<const std::size_t> shape) {
+    if (shape.size() < 5) return 0;
+    const auto leading = shape.first(shape.size() - 4), cube = shape.last(4);
+    if (cube[0] != 6 || cube[1] != cube[2] || cube[3] != 3) return 0;
+    return std::accumulate(leading.begin(), leading.end(), std::size_t{1}, std::multiplies<>());
 }
 
 /// What the report says of one array.

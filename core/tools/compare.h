@@ -11,7 +11,7 @@ namespace hairbake {
 /// - for each array its name without ".npy" and the statistics of second - first: values (their number), max_abs, rms,
 ///   bias, largest (the largest absolute value of the first) and rms_over_largest. A NaN on either side makes every
 ///   figure null;
-/// - a set of cube maps ([M + 1, 6, n, n, 3]) has one entry for each map, specular_00 and so on;
+/// - a set of cube maps ([M + 1, 6, n, n, 3], or more leading axes) has one entry for each map: specular_00 and so on;
 /// - an array that only one folder has, or that has two shapes, has a sentence instead.
 /// Throws Error(bad_input) when a folder is no result, or when the two have no .npy file in common.
 std::string compare(const std::filesystem::path& first, const std::filesystem::path& second);
