@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds both images without a Docker engine and bakes a sample through them: docker/check.sh, as root, on Debian 12.
 # HAIRBAKE_JOBS: how many compilers run at once. HAIRBAKE_CCACHE: a folder of ccache for the build inside to use.
-# Everything lies in build/container; the images stay there, so that a second run builds only what has changed.
+# All files are in build/container. The images stay there, so that a second run builds only what has changed.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -10,7 +10,7 @@ say() { echo "== $*"; }
 
 [[ $EUID -eq 0 ]] || die "only root can do this"
 if [[ -z ${HAIRBAKE_UNSHARED:-} ]]; then
-    # In a mount namespace of its own: the container runtime wants a cgroup file system, even if only to look at.
+    # In a mount namespace of its own, since the container runtime demands a cgroup file system.
     export HAIRBAKE_UNSHARED=1
     exec unshare -m --propagation private sh -c \
         'umount -R -l /sys/fs/cgroup 2>/dev/null; mount -t cgroup2 -o ro none /sys/fs/cgroup && exec "$@"' sh "$0" "$@"

@@ -1,4 +1,4 @@
-// hairbaked: the service. The boot order is main()'s.
+// hairbaked: the service. serve() starts its parts in order.
 #include <signal.h>
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_sinks.h>
@@ -20,8 +20,8 @@
 #include "core/base/digest.h"
 #include "core/base/error.h"
 #include "server/http/access.h"
+#include "server/http/http_server.h"
 #include "server/http/metrics.h"
-#include "server/http/rim.h"
 #include "server/http/router.h"
 #include "server/http/routes.h"
 #include "server/jobs/service.h"
@@ -33,11 +33,11 @@ using namespace hairbake;
 
 constexpr const char* usage = R"(hairbaked [--config FILE]   serve; without a file, the defaults hold
 hairbaked token new         print a new token and the lines for the configuration
-hairbaked routes            print what it answers: method, address, scope, limit of the body in bytes, media types
+hairbaked routes            print the routes: method, address, scope, limit of the body in bytes, media types
 hairbaked --version
 )";
 
-/// The message with what JSON does not take in a string escaped.
+/// A log message, escaped for a JSON string.
 class JsonMessage : public spdlog::custom_flag_formatter {
 public:
     void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& target) override {
@@ -72,10 +72,10 @@ int print_new_token() {
     return 0;
 }
 
-/// The table of a service that does not serve.
+/// Prints the table of routes; the service is made on an empty store and answers nothing.
 int print_routes() {
     char folder[] = "/tmp/hairbaked-routes-XXXXXX";
-    if (!::mkdtemp(folder)) throw Error(ErrorKind::internal, "there is no room in /tmp");
+    if (!::mkdtemp(folder)) throw Error(ErrorKind::internal, "no folder can be made in /tmp");
     struct Remove {
         std::filesystem::path path;
         ~Remove() { std::filesystem::remove_all(path); }
@@ -89,7 +89,7 @@ int print_routes() {
     for (const Route& route : all_routes(service, access, metrics)) {
         std::string types;
         for (const std::string& type : route.types) types += " " + type;
-        std::printf("%s %s %s %llu%s\n", route.method.c_str(), route.pattern.c_str(), name_of(route.scope),
+        std::printf("%s %s %s %llu%s\n", route.method.c_str(), route.pattern.c_str(), name_of(route.scope).c_str(),
                     static_cast<unsigned long long>(route.body_limit), types.c_str());
     }
     return 0;
@@ -103,7 +103,7 @@ sigset_t stop_signals() {
     return set;
 }
 
-/// In every thread that starts later, stop signals wait for wait_for_signal().
+/// Blocks the stop signals in this thread and all later ones, so that wait_for_signal() receives them.
 void prepare_signals() {
     signal(SIGINT, SIG_DFL);  // a shell starts background jobs with SIGINT ignored
     signal(SIGPIPE, SIG_IGN);
@@ -119,7 +119,8 @@ void wait_for_signal() {
     }
 }
 
-/// Everything that was answered is on the disk already, so a slow client or worker does not hold up the stop.
+/// Ends the process after `patience` without waiting for slow clients and workers. Everything that was acknowledged is on
+/// the disk already.
 void end_hard_after(std::chrono::seconds patience) {
     std::thread([patience] {
         std::this_thread::sleep_for(patience);
@@ -128,7 +129,7 @@ void end_hard_after(std::chrono::seconds patience) {
 }
 
 #ifdef HAIRBAKE_PLANTED_RACE
-/// What a ThreadSanitizer run must find: threads write here without a lock.
+/// A data race that a run under ThreadSanitizer must find.
 void race() {
     static volatile long long requests = 0;
     requests = requests + 1;
@@ -147,7 +148,7 @@ HttpReply answer(const Router& router, Metrics& metrics, HttpRequest& request) {
     return reply;
 }
 
-/// A connection takes a descriptor, and the usual soft limit is lower than what may wait.
+/// Each connection takes a descriptor, and the usual soft limit is lower than the number of connections that may wait.
 void allow_many_files() {
     rlimit limit{};
     if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
@@ -163,22 +164,23 @@ int serve(const Settings& settings) {
     Access access(settings.tokens);
     Metrics metrics;
     const Router router(all_routes(service, access, metrics), access);
-    Rim rim({settings.socket, settings.address, settings.port, settings.threads, settings.waiting, settings.accel},
-            [&](HttpRequest& request) { return answer(router, metrics, request); });
+    HttpServer http_server(
+        {settings.socket, settings.address, settings.port, settings.threads, settings.waiting, settings.accel},
+        [&](HttpRequest& request) { return answer(router, metrics, request); });
     std::atomic<bool> stopping = false;
     std::jthread serving([&] {
-        rim.serve();
+        http_server.serve();
         if (stopping) return;
-        spdlog::critical("no connection can be accepted any more: the daemon ends, so that it is started anew");
-        _exit(1);  // what was answered is on the disk
+        spdlog::critical("no connection can be accepted any more; the daemon ends, so that systemd starts it again");
+        _exit(1);  // everything that was acknowledged is on the disk
     });
-    std::printf("hairbaked listens on %s\n", rim.address().c_str());
+    std::printf("hairbaked listens on %s\n", http_server.address().c_str());
     std::fflush(stdout);
     wait_for_signal();
     spdlog::info("stopping");
     stopping = true;
     end_hard_after(std::chrono::seconds(4));
-    rim.stop();
+    http_server.stop();
     service.stop();
     serving.join();
     return 0;

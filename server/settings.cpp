@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "core/base/error.h"
+#include "server/jobs/runner_kinds.h"
 #include "server/store/blob_store.h"
 
 namespace hairbake {
@@ -17,7 +18,7 @@ namespace {
     throw Error(ErrorKind::usage, field + " " + message, field);
 }
 
-/// The fields of one table; done() refuses those that nobody asked for.
+/// The fields of one table. done() refuses fields that were not read.
 class Block {
 public:
     Block(const toml::table& table, std::string name) : table_(table), name_(std::move(name)) {}
@@ -74,16 +75,15 @@ void read_block(const toml::table& file, const char* name, const Read& read) {
     block.done();
 }
 
-std::vector<std::string> scopes_of(const toml::node* node) {
-    static const std::set<std::string> known{"read", "upload", "bake", "admin"};
-    std::vector<std::string> scopes;
+std::set<Scope> scopes_of(const toml::node* node) {
+    std::set<Scope> scopes;
     const toml::array* list = node ? node->as_array() : nullptr;
     if (!list || list->empty()) refuse("token.scopes", "is missing; allowed is a list of read, upload, bake, admin");
     for (const toml::node& item : *list) {
-        const auto scope = item.value_exact<std::string>();
-        if (!scope || !known.count(*scope))
-            refuse("token.scopes", "holds something else than read, upload, bake, admin");
-        scopes.push_back(*scope);
+        const auto name = item.value_exact<std::string>();
+        const auto scope = name ? find_in(token_scopes, *name) : std::nullopt;
+        if (!scope) refuse("token.scopes", "holds another value than the allowed " + list_names(token_scopes));
+        scopes.insert(*scope);
     }
     return scopes;
 }
@@ -111,40 +111,54 @@ TokenSettings read_token(const toml::table& table) {
     return token;
 }
 
+void read_listen(Block& block, Settings& settings, const fs::path& base) {
+    block.read<std::string>("socket", "a path", [&](const std::string& value) { settings.socket = base / value; });
+    block.text("address", settings.address);
+    block.number("port", settings.port, 0, 65535);
+    block.number("threads", settings.threads, 1, 1024);
+    block.number("waiting", settings.waiting, 1, 65536);
+    block.text("accel", settings.accel);
+}
+
+void read_store(Block& block, Settings& settings, const fs::path& base) {
+    block.path("folder", settings.store, base);
+    block.number("budget_mb", settings.budget_bytes, 1, 1 << 30, 1 << 20);
+    block.number("blob_mb", settings.blob_bytes, 1, 1 << 20, 1 << 20);
+    block.number("upload_lifetime_s", settings.upload_lifetime_s, 1, 366 * 86400);
+    block.number("open_uploads", settings.open_uploads, 1, 1'000'000);
+    block.number("keep_failed_s", settings.keep_failed_s, 1, 3660ll * 86400);
+}
+
+void read_workers(Block& block, Settings& settings, const fs::path& base) {
+    block.text("runner", settings.runner);
+    block.path("program", settings.worker, base);
+    block.number("count", settings.workers, 0, 1024);
+    block.number("threads", settings.worker_threads, 0, 1024);
+    block.number("memory_mb", settings.memory_bytes, 0, 1 << 24, 1 << 20);
+    block.number("cpu_s", settings.cpu_seconds, 0, 366 * 86400);
+    block.number("wall_s", settings.wall_seconds, 1, 366 * 86400);
+    block.number("max_crashes", settings.max_crashes, 0, 1000);
+}
+
+void read_web(Block& block, Settings& settings, const fs::path& base) {
+    block.read<std::string>("folder", "a path", [&](const std::string& value) {
+        settings.web = value.empty() ? fs::path() : base / value;
+    });
+}
+
 Settings read_tables(const toml::table& file, const fs::path& base) {
+    struct Table {
+        const char* name;
+        void (*read)(Block& block, Settings& settings, const fs::path& base);
+    };
+    constexpr Table tables[]{
+        {"listen", read_listen}, {"store", read_store}, {"workers", read_workers}, {"web", read_web}};
     Settings settings;
-    read_block(file, "listen", [&](Block& block) {
-        block.read<std::string>("socket", "a path", [&](const std::string& value) { settings.socket = base / value; });
-        block.text("address", settings.address);
-        block.number("port", settings.port, 0, 65535);
-        block.number("threads", settings.threads, 1, 1024);
-        block.number("waiting", settings.waiting, 1, 65536);
-        block.text("accel", settings.accel);
-    });
-    read_block(file, "store", [&](Block& block) {
-        block.path("folder", settings.store, base);
-        block.number("budget_mb", settings.budget_bytes, 1, 1 << 30, 1 << 20);
-        block.number("blob_mb", settings.blob_bytes, 1, 1 << 20, 1 << 20);
-        block.number("upload_lifetime_s", settings.upload_lifetime_s, 1, 366 * 86400);
-        block.number("open_uploads", settings.open_uploads, 1, 1'000'000);
-        block.number("keep_failed_s", settings.keep_failed_s, 1, 3660ll * 86400);
-    });
-    read_block(file, "workers", [&](Block& block) {
-        block.path("program", settings.worker, base);
-        block.number("count", settings.workers, 0, 1024);
-        block.number("threads", settings.worker_threads, 0, 1024);
-        block.number("memory_mb", settings.memory_bytes, 0, 1 << 24, 1 << 20);
-        block.number("cpu_s", settings.cpu_seconds, 0, 366 * 86400);
-        block.number("wall_s", settings.wall_seconds, 1, 366 * 86400);
-        block.number("max_crashes", settings.max_crashes, 0, 1000);
-    });
-    read_block(file, "web", [&](Block& block) {
-        block.read<std::string>("folder", "a path", [&](const std::string& value) {
-            settings.web = value.empty() ? fs::path() : base / value;
-        });
-    });
     Block whole(file, "");
-    for (const char* table : {"listen", "store", "workers", "web"}) whole.ignore(table);
+    for (const Table& table : tables) {
+        whole.ignore(table.name);
+        read_block(file, table.name, [&](Block& block) { table.read(block, settings, base); });
+    }
     if (const toml::node* tokens = whole.get("token")) {
         if (!tokens->is_array_of_tables()) refuse("token", "is not a list of tables: [[token]]");
         for (const toml::node& token : *tokens->as_array()) settings.tokens.push_back(read_token(*token.as_table()));
@@ -153,7 +167,7 @@ Settings read_tables(const toml::table& file, const fs::path& base) {
     return settings;
 }
 
-/// The page as `./dev build` or an installation puts it; empty when there is none.
+/// The page's folder, as `./dev build` or an installation places it; empty when there is none.
 fs::path page_beside(const fs::path& programs) {
     for (const char* place : {"../web", "../share/hairbake/web"})
         if (fs::path folder = (programs / place).lexically_normal(); fs::exists(folder / "index.html")) return folder;
@@ -182,9 +196,15 @@ void complete(Settings& settings) {
     if (!settings.web) settings.web = page_beside(programs);
     if (settings.socket.empty() && settings.address != "127.0.0.1" && settings.address != "::1")
         refuse("listen.address",
-               "is " + settings.address + "; allowed is 127.0.0.1 or ::1: nginx is the face to the network");
+               "is " + settings.address + "; allowed is 127.0.0.1 or ::1: put nginx in front to expose it");
     if (!settings.accel.empty() && (!settings.accel.starts_with("/") || !settings.accel.ends_with("/")))
         refuse("listen.accel", "is " + settings.accel + "; allowed is a location that begins and ends with /");
+    const std::vector<std::string> runners = runner_names();
+    if (std::find(runners.begin(), runners.end(), settings.runner) == runners.end()) {
+        std::string allowed;
+        for (const std::string& name : runners) allowed += (allowed.empty() ? "" : ", ") + name;
+        refuse("workers.runner", "is " + settings.runner + "; allowed is " + allowed);
+    }
     if (!fs::exists(settings.worker)) refuse("workers.program", settings.worker.string() + " does not exist");
     settings.store = fs::absolute(settings.store);
 }

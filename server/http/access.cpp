@@ -61,15 +61,10 @@ std::optional<std::string> cookie_of(const HttpRequest& request) {
 
 }  // namespace
 
-const char* name_of(Scope scope) {
-    constexpr std::array<const char*, 5> names{"open", "read", "upload", "bake", "admin"};
-    return names[static_cast<std::size_t>(scope)];
-}
-
 std::optional<std::size_t> Access::find_token(const std::string& text) const {
     const std::string digest = Digest().add(text).hex();
     std::optional<std::size_t> found;
-    for (std::size_t i = 0; i < tokens_.size(); ++i) {  // always all of them, in constant time
+    for (std::size_t i = 0; i < tokens_.size(); ++i) {  // all of them, so that the time tells nothing
         const std::string& known = tokens_[i].sha256;
         if (known.size() == digest.size() && CRYPTO_memcmp(known.data(), digest.data(), digest.size()) == 0) found = i;
     }
@@ -90,7 +85,7 @@ std::optional<std::size_t> Access::token_of(const HttpRequest& request) {
     return session->second.token;
 }
 
-/// A browser names the page's origin with everything that changes something; it must be this service.
+/// A browser sends the page's origin with every request that changes something; it must be this service.
 void Access::check_origin(const HttpRequest& request) const {
     const auto origin = request.header("Origin");
     if (origin && host_of(*origin) != request.header("Host").value_or(""))
@@ -100,24 +95,22 @@ void Access::check_origin(const HttpRequest& request) const {
 void Access::check(HttpRequest& request, Scope scope) {
     if (tokens_.empty() && is_forwarded(request))
         deny(403, "no-tokens",
-             "the daemon has no tokens in its configuration and so serves its own machine alone, nothing that a proxy "
-             "forwards; `hairbaked token new` makes one");
+             "the daemon has no tokens in its configuration, so it serves its own machine alone and refuses what a "
+             "proxy "
+             "forwards; `hairbaked token new` makes a token");
     if (scope == Scope::open) return;
     if (tokens_.empty()) {
         if (!is_loopback(request.header("Host").value_or("")))
-            deny(403, "no-tokens", "without tokens in its configuration the service is for this machine alone");
+            deny(403, "no-tokens", "without tokens in its configuration the service answers this machine alone");
         check_origin(request);
         request.caller = "local";
         return;
     }
     const auto token = token_of(request);
     if (!token) deny(401, "unauthorized", "a valid token is needed: Authorization: Bearer ...");
-    const std::vector<std::string>& scopes = tokens_[*token].scopes;
-    const auto has = [&](const std::string& name) {
-        return std::find(scopes.begin(), scopes.end(), name) != scopes.end();
-    };
-    if (!has(name_of(scope)) && !has("admin"))
-        deny(403, "forbidden", std::string("the token lacks the scope ") + name_of(scope));
+    const std::set<Scope>& scopes = tokens_[*token].scopes;
+    if (!scopes.count(scope) && !scopes.count(Scope::admin))
+        deny(403, "forbidden", "the token lacks the scope " + name_of(scope));
     request.caller = tokens_[*token].name;
 }
 

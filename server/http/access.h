@@ -1,4 +1,4 @@
-// Who may do what: tokens, browser sessions, and the checks that hold without tokens.
+// Access control: tokens, browser sessions, and the checks of a service without tokens.
 #pragma once
 
 #include <map>
@@ -12,11 +12,7 @@
 
 namespace hairbake {
 
-/// What a route asks for. `open` routes serve anybody who reaches the daemon.
-enum class Scope { open, read, upload, bake, admin };
-const char* name_of(Scope scope);
-
-/// A refusal with 401 or 403.
+/// The exception for a reply of 401 or 403.
 class Denied : public std::exception {
 public:
     explicit Denied(HttpReply reply) : reply_(std::move(reply)) {}
@@ -32,15 +28,19 @@ class Access {
 public:
     explicit Access(std::vector<TokenSettings> tokens) : tokens_(std::move(tokens)) {}
 
-    /// Sets request.caller, or throws Denied. Without tokens in the configuration everything is allowed to who names a
-    /// loopback host in Host and, if at all, in Origin: a page of another site that had its name point to 127.0.0.1
-    /// cannot do that; what a proxy forwards is refused, even what is open. With tokens: `Authorization: Bearer`, or
-    /// the cookie of a session. A scope is not implied by another, but admin implies all.
+    /// Checks the request and sets request.caller.
+    ///
+    /// With tokens in the configuration, a request needs `Authorization: Bearer` or the cookie of a session, and the
+    /// token needs the scope. No scope implies another one, but admin implies all.
+    /// Without tokens, the headers Host and Origin must name a loopback host: a page of another site whose name was
+    /// pointed to 127.0.0.1 cannot send these. Requests that a proxy forwards are refused, even for open routes.
+    /// Throws Denied.
     void check(HttpRequest& request, Scope scope);
 
-    /// Exchanges the request's bearer token for a session of twelve hours; the value of Set-Cookie. Throws Denied.
+    /// Exchanges the request's bearer token for a session of twelve hours. Returns the value of Set-Cookie.
+    /// Throws Denied.
     std::string open_session(const HttpRequest& request);
-    /// Ends the request's session; the value of Set-Cookie.
+    /// Ends the request's session. Returns the value of Set-Cookie.
     std::string close_session(const HttpRequest& request);
 
 private:

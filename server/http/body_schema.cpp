@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::json;
 using Adapter = valijson::adapters::NlohmannJsonAdapter;
-constexpr int deepest = 16;  // of a request; what is parsed later recurses no deeper than this
+constexpr int deepest = 16;  // levels of a request; later parsers recurse no deeper
 constexpr std::size_t longest_value = 60, longest_schema = 600;
 
 struct BodySchema {
@@ -27,14 +27,14 @@ struct BodySchema {
     valijson::Schema parsed;
 };
 
-/// valijson makes a std::regex for every pattern that it checks, and libstdc++'s regex fills a cache of the locale
-/// without a lock (found by ThreadSanitizer). Filled before, it is only read.
+/// valijson makes a std::regex for every pattern, and libstdc++'s regex fills a cache of the locale without a lock. This
+/// fills the cache in advance, so that threads only read it.
 void fill_narrow_cache() {
     const auto& characters = std::use_facet<std::ctype<char>>(std::locale());
     for (int c = 1; c < 256; ++c) characters.narrow(static_cast<char>(c), 0);
 }
 
-/// Those of the requests' bodies: the others hold references.
+/// The schemas of bodies. Other schemas of the document hold references, which valijson would have to resolve.
 std::map<std::string, BodySchema> read_schemas() {
     fill_narrow_cache();
     std::map<std::string, BodySchema> schemas;
@@ -61,7 +61,7 @@ std::string shortened(const std::string& text, std::size_t length) {
     return text.size() <= length ? text : text.substr(0, length) + "...";
 }
 
-/// Where the first error lies, walked from the root: `schema` may be null where several could be meant.
+/// The place of the first error, found by walking from the root. `schema` is null when it is ambiguous.
 struct Place {
     Json::json_pointer pointer;
     std::string field;  ///< "irradiance.lights[0].direction"
@@ -102,7 +102,7 @@ Place place_of(const std::vector<std::string>& context, const Json& body, const 
     throw Refusal(Refused::unprocessable, words, place.field).at(place.pointer.to_string());
 }
 
-/// A name that the object has and may not have, or lacks and must have.
+/// Refuses an object with an unknown field or without a required one; else returns.
 void refuse_names(Place place, const Json& object) {
     const Json properties = place.schema->value("properties", Json::object());
     if (place.schema->value("additionalProperties", Json(true)) == Json(false))
@@ -120,7 +120,7 @@ void refuse_names(Place place, const Json& object) {
         }
 }
 
-/// The schema without what nests and what it says to people.
+/// The constraints of a schema as text, and its description.
 std::string allowed_by(Json schema) {
     const std::string description = schema.value("description", "");
     for (const char* word : {"properties", "description", "title", "default"}) schema.erase(word);
@@ -134,7 +134,7 @@ std::string allowed_by(Json schema) {
     const std::string name = place.field.empty() ? "the body" : place.field;
     const std::string value = shortened(found.dump(-1, ' ', false, Json::error_handler_t::replace), longest_value);
     refuse(place, name + " is " + value + "; allowed is " +
-                      (place.schema ? allowed_by(*place.schema) : "what /openapi.json says"));
+                      (place.schema ? allowed_by(*place.schema) : "described by /openapi.json"));
 }
 
 }  // namespace

@@ -7,12 +7,12 @@
 
 namespace hairbake {
 
-/// The body as text, once the schema of that name in components.schemas takes it. Throws Refusal(malformed) for what is
-/// no JSON or nested too deeply, Refusal(unprocessable) naming the field, what was found and what is allowed. It was
-/// counted against the route's limit.
+/// The body as text, valid by the schema of that name in components.schemas. The router has limited its length.
+/// Throws Refusal(malformed) when it is no JSON or nested too deeply.
+/// Throws Refusal(unprocessable) naming the field, what was found and what is allowed.
 std::string read_json(const HttpRequest& request, const std::string& schema);
 
-/// The same for a text and the schema `name`. Thread-safe.
+/// The same check of `text` by the schema `name`. Thread-safe.
 void check_json(const std::string& text, const std::string& name);
 
 }  // namespace hairbake

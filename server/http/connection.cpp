@@ -13,11 +13,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 constexpr std::size_t most_held = 16384, most_lingering = 16u << 20;
-constexpr milliseconds glance(10);  // how soon a waiting thread notices that it is not wanted any more
+constexpr milliseconds glance(10);  // how often `still_wanted` is asked
 
 bool must_wait() { return errno == EAGAIN || errno == EWOULDBLOCK; }
 
-/// -1, or what the call gave when no signal had come between.
+/// Repeats `call` while a signal interrupts it.
 template <class Call>
 ssize_t uninterrupted(Call call) {
     for (;;) {
@@ -46,7 +46,7 @@ bool Connection::await_readable() const { return ahead_begin_ < ahead_end_ || aw
 
 bool Connection::await_writable() const { return await(POLLOUT, patience_.write); }
 
-/// Without waiting.
+/// Does not wait.
 ssize_t Connection::receive(char* data, std::size_t size) const {
     return uninterrupted([&] { return ::recv(socket_, data, size, MSG_DONTWAIT); });
 }
@@ -57,7 +57,7 @@ ssize_t Connection::send(const char* data, std::size_t size) const {
 
 bool Connection::await_request(const std::function<bool()>& still_wanted) {
     const auto end = Clock::now() + patience_.first_byte;
-    ssize_t count = receive(ahead_.data(), ahead_.size());  // most often it is there
+    ssize_t count = receive(ahead_.data(), ahead_.size());  // usually the request is there already
     while (count < 0 && must_wait() && still_wanted() && Clock::now() < end) {
         await(POLLIN, glance);
         count = receive(ahead_.data(), ahead_.size());
@@ -73,7 +73,7 @@ ssize_t Connection::read(char* data, std::size_t size) {
     }
     if (ahead_begin_ == ahead_end_) {
         if (!flush()) return -1;
-        const bool whole = size >= ahead_.size();  // not worth a copy
+        const bool whole = size >= ahead_.size();  // large: past the buffer
         char* const into = whole ? data : ahead_.data();
         const std::size_t room = whole ? size : ahead_.size();
         ssize_t count = receive(into, room);

@@ -1,4 +1,4 @@
-// One accepted connection: its bytes in and out, with as few calls of the system as a single request needs.
+// An accepted connection, buffered so that a short request and its reply need few system calls.
 #pragma once
 
 #include <sys/types.h>
@@ -11,12 +11,12 @@
 
 namespace hairbake {
 
-/// For one thread. Owns the socket and closes it. What is written is held back until it is worth a packet, something
-/// is read, or flush() is called: a reply's head and body, written one by one, leave together.
+/// For one thread. Owns the socket and closes it. Written bytes are buffered until they fill a packet, something is read,
+/// or flush() is called, so that a reply's head and body leave together.
 class Connection {
 public:
     struct Patience {
-        std::chrono::milliseconds first_byte, read, write;  ///< how long the client may stay silent, or not read
+        std::chrono::milliseconds first_byte, read, write;  ///< how long to wait for the client
     };
 
     Connection(int socket, const Patience& patience);
@@ -25,19 +25,19 @@ public:
     Connection& operator=(const Connection&) = delete;
 
     int socket() const { return socket_; }
-    /// Waits for the first bytes; gives up when patience ends, or a moment after `still_wanted` says no.
+    /// Waits for the first bytes. Returns false when the patience ends or soon after `still_wanted` returns false.
     bool await_request(const std::function<bool()>& still_wanted);
-    /// 1 to `size` bytes; 0: the client has closed; -1: it is gone, or was silent for too long.
+    /// Returns the number of bytes read, 1 to `size`; 0 when the client has closed; -1 after an error or a timeout.
     ssize_t read(char* data, std::size_t size);
-    /// `size`, or -1 when what was held back cannot be sent.
+    /// Returns `size`, or -1 when buffered bytes cannot be sent.
     ssize_t write(const char* data, std::size_t size);
     bool flush();
-    /// Whether the client sends, or takes, bytes before patience ends.
+    /// Whether bytes can be read, or written, before the patience ends.
     bool await_readable() const;
     bool await_writable() const;
 
-    /// Says that no more will be sent, and reads away for so long what the client still sends, so that the reply is not
-    /// lost in a connection reset.
+    /// Shuts down sending, and discards for that long what the client still sends. Otherwise a connection reset could
+    /// destroy the reply.
     void linger(std::chrono::milliseconds patience) const;
 
 private:
@@ -48,9 +48,9 @@ private:
 
     const int socket_;
     const Patience patience_;
-    std::array<char, 4096> ahead_;                 ///< what was read ahead ...
-    std::size_t ahead_begin_ = 0, ahead_end_ = 0;  ///< ... lies here in it
-    std::string held_;                             ///< what was written and not sent
+    std::array<char, 4096> ahead_;                 ///< read buffer
+    std::size_t ahead_begin_ = 0, ahead_end_ = 0;  ///< the unread bytes in it
+    std::string held_;                             ///< write buffer
 };
 
 }  // namespace hairbake

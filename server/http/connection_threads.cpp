@@ -7,18 +7,20 @@
 #include <system_error>
 #include <thread>
 
+#include "core/base/assert.h"
+
 namespace hairbake {
 namespace {
 
-constexpr std::size_t most_accepting = 4;  // so many connections come at once without a thread to be woken
+constexpr std::size_t most_accepting = 4;  // a burst of so many connections wakes no thread
 
 using Clock = std::chrono::steady_clock;
 
-/// Whether accept() cannot work any more.
+/// Whether the socket cannot accept any more.
 bool is_final(int error) { return error == EINVAL || error == EBADF || error == ENOTSOCK; }
 
-/// Whether the next accept() can work: a signal came, or the client went away. The rest is a shortage of descriptors or
-/// memory, which may pass.
+/// Whether accept() can be called again at once: a signal came, or the client went away. The other errors are shortages of
+/// descriptors or memory, which may pass.
 bool is_nothing(int error) { return error == EINTR || error == EAGAIN || error == ECONNABORTED; }
 
 }  // namespace
@@ -29,7 +31,8 @@ ConnectionThreads::ConnectionThreads(int listening, int threads, int waiting, Ha
       most_waiting_(static_cast<std::size_t>(waiting)),
       serve_(std::move(serve)),
       refuse_(std::move(refuse)) {
-    idle_.reserve(threads_ + 1);  // all memory is taken here: what runs out later ends no thread
+    HAIRBAKE_ASSERT(threads >= 1 && waiting >= 1);
+    idle_.reserve(threads_ + 1);  // no allocation later: a shortage of memory must not end a thread
     waiting_.reserve(most_waiting_);
 }
 
@@ -62,25 +65,25 @@ void ConnectionThreads::work() {
             case Place::at_door:
                 refuse_(socket);
                 break;
-            case Place::elsewhere:  // in the queue, or there is none
+            case Place::elsewhere:  // in the queue, or no connection was accepted
                 break;
         }
     }
 }
 
-/// Sleeps while enough others accept. False at the end.
+/// Sleeps while enough other threads accept. Returns false when the threads shall end.
 bool ConnectionThreads::await_turn(std::condition_variable& woken) {
     std::unique_lock lock(mutex_);
     while (!ending_ && accepting_ == most_accepting) {
         idle_.push_back(&woken);
         woken.wait(lock);
-        std::erase(idle_, &woken);  // still there when it woke by itself
+        std::erase(idle_, &woken);  // it is still there after a spurious wake-up
     }
     if (!ending_) ++accepting_;
     return !ending_;
 }
 
-/// A socket, or -1 when something came between.
+/// Returns a socket, or -1 when none was accepted.
 int ConnectionThreads::accept() {
     const int socket = ::accept4(listening_, nullptr, nullptr, SOCK_CLOEXEC);
     if (socket >= 0) return socket;
@@ -94,14 +97,14 @@ int ConnectionThreads::accept() {
     return -1;
 }
 
-/// Once a minute.
+/// Logs the error, at most once a minute.
 void ConnectionThreads::complain(int error) {
     {
         const std::lock_guard lock(mutex_);
         if (Clock::now() < silent_until_) return;
         silent_until_ = Clock::now() + std::chrono::minutes(1);
     }
-    spdlog::error("no connection can be accepted for now: {}", std::generic_category().message(error));
+    spdlog::error("no connection can be accepted at present: {}", std::generic_category().message(error));
 }
 
 ConnectionThreads::Place ConnectionThreads::place(int accepted) {
@@ -121,7 +124,7 @@ ConnectionThreads::Place ConnectionThreads::place(int accepted) {
     return Place::with_thread;
 }
 
-/// For a thread that has served one; -1 when none waits.
+/// The next connection for a thread that has served one; -1 when none waits.
 int ConnectionThreads::next_waiting() {
     const std::lock_guard lock(mutex_);
     if (waiting_.empty()) {

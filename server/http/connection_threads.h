@@ -1,4 +1,4 @@
-// The threads that accept connections and answer them: a fixed number, and a queue that does not grow without end.
+// The threads that accept and serve connections: a fixed number, and a bounded queue.
 #pragma once
 
 #include <chrono>
@@ -9,23 +9,25 @@
 
 namespace hairbake {
 
-/// A thread serves the connection that it accepted itself, so that none is handed from one thread to another while few
-/// come. A few threads accept at a time and the others sleep; of those, who fell asleep last is woken first: its stack
-/// and its memory are still in the cache. When all `threads` serve, one more accepts: what it accepts waits in the
-/// order in which it came, and what finds the queue full is refused.
+/// A thread serves the connections that it accepted itself, so under light load no connection changes its thread. A few
+/// threads accept at a time; the others sleep. The thread that fell asleep last is woken first, since its stack is still
+/// in the cache. While all `threads` serve, one more thread accepts: connections wait in the queue in order, and are
+/// refused when it is full.
 class ConnectionThreads {
 public:
-    /// Gets an accepted connection's socket, which it closes. Must not throw.
+    /// Takes over an accepted connection's socket. Must not throw.
     using Handler = std::function<void(int socket)>;
 
-    /// listening: a socket that outlives this. threads: how many connections are served at once; waiting: how many
-    /// more are held; both at least 1. `refuse` is called by one thread at a time.
+    /// `listening` is a socket that outlives this object.
+    /// `threads` >= 1 connections are served at once.
+    /// `waiting` >= 1 connections may be in the queue.
+    /// `serve` and `refuse` handle a connection; one thread at a time calls `refuse`.
     ConnectionThreads(int listening, int threads, int waiting, Handler serve, Handler refuse);
 
-    /// Accepts until stop(), or until the socket cannot accept any more; then returns when all that was accepted has
-    /// been served and every thread has ended. To be called once.
+    /// Accepts until stop() is called or the socket cannot accept any more. Returns when all accepted connections are
+    /// served and all threads have ended. Call it once.
     void run();
-    /// Thread-safe; before run() too.
+    /// Thread-safe; may be called before run().
     void stop();
 
 private:
@@ -41,7 +43,7 @@ private:
     const int listening_;
     const std::size_t threads_, most_waiting_;
     const Handler serve_, refuse_;
-    std::mutex mutex_;  ///< of what follows
+    std::mutex mutex_;  ///< guards the members below
     bool ending_ = false;
     std::chrono::steady_clock::time_point silent_until_{};
     std::size_t accepting_ = 0, serving_ = 0;     ///< threads

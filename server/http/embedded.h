@@ -5,7 +5,7 @@
 
 namespace hairbake {
 
-/// config/openapi.json, where components.schemas.BakeRequest is left to be filled in.
+/// config/openapi.json. openapi() completes it.
 std::string_view openapi_document();
 
 }  // namespace hairbake

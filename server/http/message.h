@@ -1,4 +1,4 @@
-// Requests and replies as the routes see them: no type of the HTTP library.
+// Requests and replies of the routes, independent of the HTTP library.
 #pragma once
 
 #include <cstddef>
@@ -17,15 +17,15 @@ namespace hairbake {
 struct HttpRequest {
     std::string method;
     std::vector<std::string> path;                ///< decoded segments; none is empty, "." or ".."
-    std::map<std::string, std::string> query;     ///< decoded; the last of equal names
-    std::optional<std::uint64_t> content_length;  ///< none: chunked, or no body
+    std::map<std::string, std::string> query;     ///< decoded; of equal names, the last value
+    std::optional<std::uint64_t> content_length;  ///< nothing: chunked, or no body
     bool has_body = false;
-    /// First header of the name, in any case; values may have been percent-decoded, control characters are refused
-    /// before.
+    /// The first header of that name, in upper or lower case. Values may be percent-decoded and have no control characters.
     std::function<std::optional<std::string>(const std::string&)> header;
-    /// Feeds the body in pieces. Throws Refusal(malformed) when it ends early; what the receiver throws passes through.
+    /// Feeds the body to the receiver in pieces. Exceptions of the receiver pass through.
+    /// Throws Refusal(malformed) when the body ends early.
     std::function<void(const std::function<void(std::span<const std::byte>)>&)> read_body;
-    std::map<std::string, std::string> parameters;  ///< what the route's {…} stand for
+    std::map<std::string, std::string> parameters;  ///< values of the route's {…}
     std::string caller;                             ///< the token's name, or "local"
 };
 
@@ -37,7 +37,7 @@ struct FileBody {
     std::uint64_t offset = 0, length = 0;
 };
 
-/// Whether a proxy stands between the client and the daemon: ours sets X-Forwarded-For on everything that it forwards.
+/// Whether a proxy forwards the request. nginx, as configured in docker/, sets X-Forwarded-For on all requests.
 inline bool is_forwarded(const HttpRequest& request) {
     return request.header("X-Forwarded-For") || request.header("Forwarded");
 }

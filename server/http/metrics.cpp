@@ -15,8 +15,8 @@ Gauges& gauges(prometheus::Registry& registry, const char* name, const char* hel
     return prometheus::BuildGauge().Name(name).Help(help).Register(registry);
 }
 
-void set_states(Gauges& family, const std::map<std::string, std::int64_t>& states) {
-    for (const auto& [state, count] : states) family.Add({{"state", state}}).Set(static_cast<double>(count));
+void set_states(Gauges& family, const std::map<JobState, std::int64_t>& states) {
+    for (const auto& [state, count] : states) family.Add({{"state", name_of(state)}}).Set(static_cast<double>(count));
 }
 
 }  // namespace

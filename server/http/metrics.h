@@ -1,4 +1,4 @@
-// Counts for /metrics, in the text form of Prometheus.
+// Counters for /metrics, in Prometheus' text format.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@ public:
     Metrics();
     ~Metrics();
 
-    /// After each request.
+    /// Counts one request.
     void count(const std::string& method, int status, double seconds);
     std::string text(const Service::Counts& counts);
 

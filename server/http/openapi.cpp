@@ -4,13 +4,14 @@
 
 #include "core/request/request_presets.h"
 #include "server/http/embedded.h"
+#include "server/jobs/bake_request.h"
 
 namespace hairbake {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What a request may say over HTTP and not on the command line, and the other way round.
+/// The request's schema with the differences between HTTP and the command line.
 Json bake_request_schema() {
     Json schema = Json::parse(request_schema());
     schema.erase("$schema");
@@ -32,7 +33,8 @@ std::string openapi() {
     Json document = Json::parse(openapi_document());
     Json& schemas = document["components"]["schemas"];
     schemas["BakeRequest"] = bake_request_schema();
-    schemas["RebakeRequest"]["properties"]["irradiance"] = schemas["BakeRequest"]["properties"]["irradiance"];
+    for (const std::string& block : lighting_blocks())
+        schemas["RebakeRequest"]["properties"][block] = schemas["BakeRequest"]["properties"][block];
     Json& bake = document["paths"]["/v1/bakes"]["post"]["requestBody"]["content"]["application/json"];
     for (const Preset& preset : presets()) {
         const std::string name(preset.name);

@@ -1,11 +1,11 @@
-// The API's description, as /openapi.json gives it.
+// The OpenAPI document that /openapi.json returns.
 #pragma once
 
 #include <string>
 
 namespace hairbake {
 
-/// config/openapi.json with the request's schema (config/request.schema.json) and the presets, as examples, in it.
+/// config/openapi.json with the request's schema (config/request.schema.json) and the presets as examples.
 std::string openapi();
 
 }  // namespace hairbake

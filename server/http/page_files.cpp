@@ -14,7 +14,7 @@ namespace {
 
 const std::string index_name = "index.html", mark = "{assets}";
 
-/// Media types of what a page consists of; empty for everything else, which is not served.
+/// The media type of a page's file; empty for other files, which are not served.
 std::string page_type(const std::string& ending) {
     static const std::map<std::string, std::string> types{{".html", "text/html; charset=utf-8"},
                                                           {".css", "text/css; charset=utf-8"},
@@ -32,8 +32,8 @@ std::string read_file(const fs::path& file) {
     return text;
 }
 
-/// No script or style stands in a page or comes from elsewhere; pictures are also made in the browser. Nothing may
-/// frame the page, and it tells nobody where it was.
+/// Scripts and styles only from this server, none inline; pictures also from the browser's memory. No other page may
+/// frame this one, and no referrer is sent.
 HttpReply secured(HttpReply reply) {
     return reply
         .with(

@@ -1,5 +1,4 @@
-// The web page as the service hands it out: read once at the start, so that no path of a request reaches the file
-// system.
+// The files of the web page, read once at the start: no path of a request reaches the file system.
 #pragma once
 
 #include <filesystem>
@@ -12,15 +11,15 @@ namespace hairbake {
 
 class PageFiles {
 public:
-    /// Reads all .html, .css, .js, .svg and .png of the folder, as clients/web/stage.mjs makes it; an empty path: there
-    /// is no page. In index.html, "{assets}" becomes the address of the other files, which holds their digest. Throws
-    /// Error(usage) when there is no index.html.
+    /// Reads all .html, .css, .js, .svg and .png files of the folder that clients/web/stage.mjs makes. An empty path means
+    /// no page. In index.html, "{assets}" becomes the address of the other files, which holds their digest.
+    /// Throws Error(usage) when there is no index.html.
     explicit PageFiles(const std::filesystem::path& folder);
 
-    /// index.html, to be asked for again each time; 404 when there is no page.
+    /// index.html, with Cache-Control: no-cache; 404 when there is no page.
     HttpReply index(const HttpRequest& request) const;
 
-    /// A file under /assets/{version}/{path...}, to be kept for ever; 404 for another version.
+    /// A file under /assets/{version}/{path...}, with Cache-Control: immutable; 404 for another version.
     HttpReply asset(const HttpRequest& request) const;
 
 private:

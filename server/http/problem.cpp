@@ -91,7 +91,7 @@ HttpReply problem(int status, const std::string& slug, const std::string& detail
 }
 
 HttpReply problem_of_status(int status) {
-    // The library answers 416 for a Range that it cannot parse, before the size of anything is known.
+    // The library answers 416 for a Range that it cannot parse.
     if (status == 416) return problem(400, "malformed", "the header Range cannot be read", "Range");
     if (status == 414) return problem(414, "too-large", "the address is longer than 8192 bytes");
     if (status == 413) return problem(413, "too-large", "the body is longer than allowed");
@@ -114,7 +114,7 @@ HttpReply problem_of_current_exception() {
     } catch (...) {
         spdlog::error("a request failed for an unknown reason");
     }
-    return problem(500, "internal", "the request could not be handled; the daemon's log tells why");
+    return problem(500, "internal", "the request could not be handled; the daemon's log has the reason");
 }
 
 }  // namespace hairbake

@@ -7,15 +7,18 @@
 
 namespace hairbake {
 
-/// `slug` makes the stable type, urn:hairbake:problem:<slug>; `field` is the field at fault or empty,
-/// `pointer` the JSON pointer to it when it is one of the body.
+/// A reply of the type urn:hairbake:problem:`slug`, which is stable.
+///
+/// `detail` tells what was found and what is allowed.
+/// `field` is the field at fault, or empty.
+/// `pointer` is the JSON pointer to the field in the body, or empty.
 HttpReply problem(int status, const std::string& slug, const std::string& detail, const std::string& field = {},
                   const std::string& pointer = {});
 
-/// The problem of a status code that the HTTP library answers with by itself.
+/// The problem for a status code that the HTTP library chose by itself.
 HttpReply problem_of_status(int status);
 
-/// The exception that is being handled; what is not expected becomes a 500 that tells nothing of the inside.
+/// The problem for the exception that is being handled. Unexpected exceptions become a 500 without details.
 HttpReply problem_of_current_exception();
 
 }  // namespace hairbake

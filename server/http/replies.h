@@ -1,32 +1,36 @@
-// Replies that many routes give: JSON with an ETag, files with ranges.
+// Replies that many routes use: JSON with an ETag, files with ranges.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "server/http/message.h"
 #include "server/jobs/service.h"
 
 namespace hairbake {
 
-/// The request's body as text. It was counted against the route's limit.
+/// The request's body as text. The router has limited its length.
 std::string read_text(const HttpRequest& request);
 
 HttpReply json_reply(int status, std::string json);
 
-/// JSON that is asked for again and again: an ETag made from it, 304 when the client has it.
+/// The reply with a header `Warning: 299 - "TEXT"` for each text.
+HttpReply with_warnings(HttpReply reply, const std::vector<std::string>& texts);
+
+/// JSON with an ETag made from it; 304 when the client has that already.
 HttpReply cached_json(const HttpRequest& request, std::string json);
-/// The same of a text whose digest is known.
+/// The same for a text whose digest is known.
 HttpReply cached_json(const HttpRequest& request, std::string json, const std::string& digest);
 
-/// A blob, whose digest is its strong ETag: If-None-Match, one Range (If-Range counts), 416 with Content-Range. More
-/// than one range is answered with the whole.
+/// A blob; its digest is its strong ETag. Understands If-None-Match, If-Range and one Range; a request with several ranges
+/// gets the whole blob.
 HttpReply file_reply(const HttpRequest& request, OpenBlob blob, const std::string& digest, const std::string& type);
 
-/// The same of a text, with the ETag `digest`.
+/// The same for a text with the ETag `digest`.
 HttpReply text_reply(const HttpRequest& request, const std::string& text, const std::string& digest,
                      const std::string& type);
 
-/// Media type by the name's ending.
+/// Media type of a file, by the ending of its name.
 std::string media_type(const std::string& name);
 
 }  // namespace hairbake

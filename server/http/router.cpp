@@ -12,7 +12,7 @@ namespace {
 
 using Parameters = std::map<std::string, std::string>;
 
-/// What the pattern's {…} stand for, when it fits.
+/// The values of the pattern's {…}. Nothing when the path does not match.
 std::optional<Parameters> match(std::string_view pattern, const std::vector<std::string>& path) {
     Parameters parameters;
     std::size_t segment = 0;
@@ -35,7 +35,7 @@ std::optional<Parameters> match(std::string_view pattern, const std::vector<std:
     return parameters;
 }
 
-/// The methods of all rows that fit the path, for Allow.
+/// The methods of all routes that match the path, for Allow.
 std::string allowed_methods(const std::vector<Route>& routes, const std::vector<std::string>& path) {
     std::string list = "OPTIONS";
     const auto add = [&](const std::string& method) {
@@ -60,16 +60,17 @@ const Route* find(const std::vector<Route>& routes, HttpRequest& request, const 
     return nullptr;
 }
 
-/// A media type without its parameters.
+/// The body's media type without its parameters.
 std::string type_of(const HttpRequest& request) {
     const std::string type = request.header("Content-Type").value_or("");
     return type.substr(0, type.find_first_of("; "));
 }
 
-/// What speaks against the body before a byte of it is read.
+/// The reply to a body that is wrong by its headers. Nothing when they are right.
+/// Throws Refusal(too_large).
 std::optional<HttpReply> wrong_body(const HttpRequest& request, const Route& route) {
     if (route.body_limit == 0) {
-        if (request.has_body) throw Refusal(Refused::too_large, "no body is taken here");
+        if (request.has_body) throw Refusal(Refused::too_large, "this address takes no body");
         return std::nullopt;
     }
     if (!request.content_length && !request.has_body)
@@ -103,7 +104,7 @@ HttpReply Router::answer_or_throw(HttpRequest& request) const {
     }
     access_.check(request, route->scope);
     if (std::optional<HttpReply> wrong = wrong_body(request, *route)) return *wrong;
-    // Whatever a handler reads is counted here, so that none can forget to.
+    // The length of the body is limited here, for all handlers.
     const auto read = request.read_body;
     request.read_body = [read,
                          limit = route->body_limit](const std::function<void(std::span<const std::byte>)>& receiver) {

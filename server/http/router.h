@@ -1,4 +1,4 @@
-// The table of routes and what finds a request's row in it.
+// The table of routes, and the search for the route of a request.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@ namespace hairbake {
 
 struct Route {
     std::string method;   ///< a GET also answers HEAD unless HEAD has a row of its own
-    std::string pattern;  ///< "/v1/bakes/{id}"; "{path...}" takes all segments that are left
+    std::string pattern;  ///< "/v1/bakes/{id}"; "{path...}" matches all remaining segments
     Scope scope = Scope::admin;
-    std::uint64_t body_limit = 0;  ///< bytes; 0: no body is taken
+    std::uint64_t body_limit = 0;  ///< bytes; 0: the route takes no body
     std::function<HttpReply(HttpRequest&)> handle;
-    /// Media types of the body; a body without Content-Type passes for any. None: the handler looks for itself.
+    /// Allowed media types of the body; a body without Content-Type is taken as any of them. Empty: the handler checks.
     std::vector<std::string> types = {};
 };
 
@@ -26,8 +26,8 @@ class Router {
 public:
     Router(std::vector<Route> routes, Access& access) : routes_(std::move(routes)), access_(access) {}
 
-    /// Access, the body's framing, limit and type, handler; 404, 405 with Allow, OPTIONS; every failure as
-    /// problem+json.
+    /// Finds the route, checks access and the body's framing, limit and type, and calls the handler. Answers 404, 405 and
+    /// OPTIONS itself. All failures become problem+json.
     HttpReply answer(HttpRequest& request) const;
 
     const std::vector<Route>& routes() const { return routes_; }

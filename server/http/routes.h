@@ -1,4 +1,4 @@
-// All routes of the service, one function a group.
+// All routes of the service; one function for each group.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +18,8 @@ std::vector<Route> service_routes(Service& service, Access& access, Metrics& met
 
 std::vector<Route> all_routes(Service& service, Access& access, Metrics& metrics);
 
-/// A query's number in [low, high], or `otherwise`. Throws Refusal(unprocessable).
+/// A number of the query in [low, high]; `otherwise` when it is not given.
+/// Throws Refusal(unprocessable).
 std::int64_t number_in_query(const HttpRequest& request, const std::string& name, std::int64_t low, std::int64_t high,
                              std::int64_t otherwise);
 

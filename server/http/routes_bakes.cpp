@@ -1,5 +1,3 @@
-#include <set>
-
 #include "server/http/body_schema.h"
 #include "server/http/replies.h"
 #include "server/http/routes.h"
@@ -18,15 +16,18 @@ std::string text_in_query(const HttpRequest& request, const std::string& name) {
 
 HttpReply post_bake(Service& service, HttpRequest& request) {
     const Service::Answer answer = service.submit(read_json(request, "BakeRequest"));
-    return json_reply(answer.state == "done" ? 200 : 202, answer.json).with("Location", "/v1/bakes/" + answer.id);
+    HttpReply reply = json_reply(answer.state == JobState::done ? 200 : 202, answer.json);
+    reply.with("Location", "/v1/bakes/" + answer.id);
+    return with_warnings(std::move(reply), answer.warnings);
 }
 
 HttpReply list_bakes(Service& service, HttpRequest& request) {
-    static const std::set<std::string> states{"", "queued", "running", "done", "failed", "cancelled"};
     BakeFilter filter;
-    filter.state = text_in_query(request, "state");
-    if (!states.count(filter.state))
-        throw Refusal(Refused::unprocessable, "state is none of queued, running, done, failed, cancelled", "state");
+    const std::string state = text_in_query(request, "state");
+    filter.state = job_state(state);
+    if (!state.empty() && !filter.state)
+        throw Refusal(Refused::unprocessable,
+                      "state is " + state.substr(0, 40) + "; allowed is " + list_names(job_states), "state");
     filter.model = text_in_query(request, "model");
     filter.environment = text_in_query(request, "environment");
     filter.name = text_in_query(request, "name");
@@ -46,10 +47,10 @@ HttpReply get_file(Service& service, HttpRequest& request) {
 HttpReply post_rebake(Service& service, HttpRequest& request) {
     const auto dry = request.query.find("dry_run");
     const bool dry_run = dry != request.query.end() && dry->second != "0";
-    const std::string answer = service.batches().rebake(read_json(request, "RebakeRequest"), dry_run);
-    if (dry_run) return json_reply(200, answer);
-    const std::size_t id = answer.find("\"id\":\"") + 6;
-    return json_reply(202, answer).with("Location", "/v1/batches/" + answer.substr(id, answer.find('"', id) - id));
+    const Batches::Rebaked rebaked = service.batches().rebake(read_json(request, "RebakeRequest"), dry_run);
+    HttpReply reply = json_reply(dry_run ? 200 : 202, rebaked.json);
+    if (!dry_run) reply.with("Location", "/v1/batches/" + rebaked.batch);
+    return with_warnings(std::move(reply), rebaked.warnings);
 }
 
 }  // namespace
@@ -68,7 +69,7 @@ std::vector<Route> bake_routes(Service& service) {
          }},
         {"DELETE", "/v1/bakes/{id}", Scope::bake, 0,
          [&service](HttpRequest& r) {
-             service.queue().cancel(r.parameters.at("id"));
+             service.cancel(r.parameters.at("id"));
              return json_reply(200, service.bakes().get(r.parameters.at("id")).json);
          }},
         {"GET", "/v1/bakes/{id}/files/{name}", Scope::read, 0, bound(get_file)},

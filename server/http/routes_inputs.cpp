@@ -50,7 +50,7 @@ std::string digest_in(const HttpRequest& request) {
     return digest.starts_with("sha256:") ? digest.substr(7) : digest;
 }
 
-/// By digest when the body is JSON, else the body is the file itself.
+/// A JSON body names the digest of a stored blob; any other body is the file itself.
 HttpReply add_input(Service& service, HttpRequest& request, const std::string& kind) {
     const std::string type = request.header("Content-Type").value_or("");
     std::string digest;
@@ -78,57 +78,57 @@ HttpReply get_thumbnail(Service& service, HttpRequest& request, const std::strin
 
 HttpReply put_name(Service& service, HttpRequest& request) {
     const Json body = Json::parse(read_json(request, "NameRequest"));
-    std::string answer;
-    service.database().write([&](Sql& sql) {
-        answer = Names::put(sql, request.parameters.at("kind"), request.parameters.at("path"),
-                            body["sha256"].get<std::string>(), body.value("note", ""), request.caller);
-    });
-    return json_reply(200, answer);
+    return json_reply(200,
+                      service.names().put(request.parameters.at("kind"), request.parameters.at("path"),
+                                          body["sha256"].get<std::string>(), body.value("note", ""), request.caller));
 }
 
 HttpReply get_name(Service& service, HttpRequest& request) {
-    std::string answer;
-    service.database().read(
-        [&](Sql& sql) { answer = Names::get(sql, request.parameters.at("kind"), request.parameters.at("path")); });
-    return cached_json(request, answer);
+    return cached_json(request, service.names().get(request.parameters.at("kind"), request.parameters.at("path")));
 }
 
 HttpReply list_names(Service& service, HttpRequest& request) {
     const auto limit = static_cast<int>(number_in_query(request, "limit", 1, 1000, 100));
     const auto cursor = request.query.find("cursor");
-    std::string answer;
-    service.database().read([&](Sql& sql) {
-        answer =
-            Names::list(sql, request.parameters.at("kind"), cursor == request.query.end() ? "" : cursor->second, limit);
-    });
-    return cached_json(request, answer);
+    return cached_json(request, service.names().list(request.parameters.at("kind"),
+                                                     cursor == request.query.end() ? "" : cursor->second, limit));
+}
+
+HttpReply list_inputs(Service& service, HttpRequest& request, const std::string& kind) {
+    const auto limit = static_cast<int>(number_in_query(request, "limit", 1, 200, 50));
+    const std::int64_t cursor = number_in_query(request, "cursor", 0, INT64_MAX, INT64_MAX);
+    return cached_json(request, service.catalog().list(kind, cursor, limit));
+}
+
+HttpReply get_input(Service& service, HttpRequest& request, const std::string& kind) {
+    return cached_json(request, service.catalog().get(kind, request.parameters.at("sha256")));
+}
+
+HttpReply delete_input(Service& service, HttpRequest& request, const std::string& kind) {
+    service.catalog().remove(kind, request.parameters.at("sha256"));
+    HttpReply reply;
+    reply.status = 204;
+    return reply;
 }
 
 /// The routes of models or of environments.
-void add_catalog(std::vector<Route>& routes, Service& service, const std::string& kind) {
+std::vector<Route> catalog_routes(Service& service, const std::string& kind) {
+    const auto bound = [&service, kind](HttpReply (*handle)(Service&, HttpRequest&, const std::string&)) {
+        return [&service, kind, handle](HttpRequest& request) { return handle(service, request, kind); };
+    };
     const std::string base = "/v1/" + kind + "s", one = base + "/{sha256}";
-    routes.push_back({"POST",
-                      base,
-                      Scope::upload,
-                      service.settings().blob_bytes,
-                      [&service, kind](HttpRequest& r) { return add_input(service, r, kind); },
-                      {"application/json", "application/octet-stream"}});
-    routes.push_back({"GET", base, Scope::read, 0, [&service, kind](HttpRequest& r) {
-                          const auto limit = static_cast<int>(number_in_query(r, "limit", 1, 200, 50));
-                          const std::int64_t cursor = number_in_query(r, "cursor", 0, INT64_MAX, INT64_MAX);
-                          return cached_json(r, service.catalog().list(kind, cursor, limit));
-                      }});
-    routes.push_back({"GET", one, Scope::read, 0, [&service, kind](HttpRequest& r) {
-                          return cached_json(r, service.catalog().get(kind, r.parameters.at("sha256")));
-                      }});
-    routes.push_back({"GET", one + "/thumbnail.png", Scope::read, 0,
-                      [&service, kind](HttpRequest& r) { return get_thumbnail(service, r, kind); }});
-    routes.push_back({"DELETE", one, Scope::upload, 0, [&service, kind](HttpRequest& r) {
-                          service.catalog().remove(kind, r.parameters.at("sha256"));
-                          HttpReply reply;
-                          reply.status = 204;
-                          return reply;
-                      }});
+    return {
+        {"POST",
+         base,
+         Scope::upload,
+         service.settings().blob_bytes,
+         bound(add_input),
+         {"application/json", "application/octet-stream"}},
+        {"GET", base, Scope::read, 0, bound(list_inputs)},
+        {"GET", one, Scope::read, 0, bound(get_input)},
+        {"GET", one + "/thumbnail.png", Scope::read, 0, bound(get_thumbnail)},
+        {"DELETE", one, Scope::upload, 0, bound(delete_input)},
+    };
 }
 
 }  // namespace
@@ -144,8 +144,10 @@ std::vector<Route> input_routes(Service& service) {
         {"GET", "/v1/names/{kind}", Scope::read, 0, bound(list_names)},
         {"GET", "/v1/names/{kind}/{path...}", Scope::read, 0, bound(get_name)},
     };
-    add_catalog(routes, service, "model");
-    add_catalog(routes, service, "environment");
+    for (const char* kind : {"model", "environment"}) {
+        const std::vector<Route> of_kind = catalog_routes(service, kind);
+        routes.insert(routes.end(), of_kind.begin(), of_kind.end());
+    }
     return routes;
 }
 

@@ -18,7 +18,7 @@ std::string http_date(double seconds) {
     return text;
 }
 
-/// Base64 as tus uses it; what is no base64 becomes nothing.
+/// Decodes the base64 of tus. Empty when it is malformed.
 std::string base64_decoded(const std::string& text) {
     const std::string letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string decoded;
@@ -54,7 +54,7 @@ HttpReply tus_reply(int status) {
 
 std::uint64_t length_header(const HttpRequest& request, const std::string& name) {
     const auto length = read_length(request.header(name).value_or(""));
-    if (!length) throw Refusal(Refused::malformed, name + " is missing or no number", name);
+    if (!length) throw Refusal(Refused::malformed, name + " is missing or not a number", name);
     return *length;
 }
 
@@ -73,7 +73,7 @@ HttpReply create(Service& service, HttpRequest& request) {
     const std::string metadata = request.header("Upload-Metadata").value_or("");
     const std::string digest = metadata_value(metadata, "sha256");
     service.uploads().check(bytes, digest, request.caller);
-    service.receive(bytes, digest);  // whether there is room: what was used longest ago goes for it
+    service.receive(bytes, digest);  // makes room, or refuses
     const UploadState state = service.uploads().create(bytes, digest, metadata, request.caller);
     return tus_reply(201)
         .with("Location", "/v1/uploads/" + state.id)
@@ -105,7 +105,7 @@ HttpReply append(Service& service, HttpRequest& request) {
     return reply;
 }
 
-/// Every request but OPTIONS names the protocol's version.
+/// Wraps a handler: all requests but OPTIONS must name the version of tus.
 std::function<HttpReply(HttpRequest&)> tus(Service& service, HttpReply (*handle)(Service&, HttpRequest&)) {
     return [&service, handle](HttpRequest& request) {
         if (request.header("Tus-Resumable").value_or("") == "1.0.0") return handle(service, request);

@@ -1,4 +1,4 @@
-// Request targets and header values, taken apart and checked.
+// Parsing and checking of request targets and header values.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace hairbake {
 
-/// "%41%2f" -> "A/"; nothing for a broken escape or a control character.
+/// "%41%2f" -> "A/". Nothing for a broken escape or a control character.
 std::optional<std::string> percent_decoded(const std::string& text);
 
 struct Target {
@@ -17,14 +17,14 @@ struct Target {
     std::map<std::string, std::string> query;
 };
 
-/// "/v1/bakes?limit=5" taken apart, segments decoded. Nothing for what is no plain absolute path: an empty or dotted
-/// segment, an encoded slash or control character, a fragment.
+/// Parses "/v1/bakes?limit=5" and decodes its segments. Nothing when it is not a plain absolute path: it has an empty or
+/// dotted segment, an encoded slash or control character, or a fragment.
 std::optional<Target> read_target(const std::string& text);
 
 /// Whether a header value has a control character other than a tab.
 bool has_control_characters(const std::string& value);
 
-/// Digits only, no sign, no overflow.
+/// Reads a decimal number without sign. Nothing for other texts and for an overflow.
 std::optional<std::uint64_t> read_length(const std::string& text);
 
 }  // namespace hairbake

@@ -55,12 +55,11 @@ std::string file_name_in_bake(const std::string& stage_kind, const std::string& 
     return file_name == "preview.png" ? "preview_" + stage_kind + ".png" : file_name;
 }
 
-std::string make_bake_manifest(const std::string& id, const std::string& request, const std::string& transmittance,
-                               const std::string& irradiance) {
+std::string make_bake_manifest(const std::string& id, const std::string& request,
+                               const std::vector<StageManifest>& manifests) {
     Parts parts;
-    if (!transmittance.empty()) parts.emplace_back("transmittance", Json::parse(transmittance));
-    if (!irradiance.empty()) parts.emplace_back("irradiance", Json::parse(irradiance));
-    // In the order of the first part; what a block of a stage alone is called stays where it stands.
+    for (const StageManifest& manifest : manifests) parts.emplace_back(manifest.kind, Json::parse(manifest.json));
+    // Blocks that only one stage has are taken over as they are.
     Json manifest = Json::object();
     for (const auto& [kind, part] : parts)
         for (const auto& [name, value] : part.items())

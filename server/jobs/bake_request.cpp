@@ -1,14 +1,15 @@
 #include "server/jobs/bake_request.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
 #include "core/request/request_json.h"
+#include "core/request/stages.h"
 #include "server/jobs/names.h"
 #include "server/store/blob_store.h"
+#include "server/store/database.h"
 #include "server/store/refusal.h"
 
 namespace hairbake {
@@ -16,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What the schema took, or a stored request; malformed only by a mistake of ours.
+/// The text passed the schema or was stored, so only a defect of ours makes it malformed.
 Json parse(const std::string& body) {
     try {
         return Json::parse(body);
@@ -39,56 +40,57 @@ struct Resolved {
 Resolved resolve(Sql& sql, const std::string& value, const std::string& kind, const std::string& field) {
     Resolved resolved;
     if (value.starts_with("name:")) {
-        const NamedDigest named = Names::resolve(sql, kind, value.substr(5), field);
+        const NamedDigest named = resolve_name(sql, kind, value.substr(5), field);
         resolved = {named.sha256, {{"path", named.path}, {"version", named.version}}};
     } else if (value.starts_with("sha256:") && is_digest(value.substr(7))) {
         resolved.digest = value.substr(7);
     } else {
         throw Refusal(Refused::unprocessable,
-                      field + " is neither of what is allowed: sha256: and 64 hexadecimal digits, or name: and a name",
+                      field + " is \"" + value.substr(0, 80) +
+                          "\"; allowed is sha256: and 64 hexadecimal digits, or name: and a name",
                       field)
             .at("/" + field);
     }
     return resolved;
 }
 
-struct FileField {
-    const char* name;
-    const char* kind;
-    std::optional<std::string> BakeRequest::*value;
-};
-
-constexpr std::array<FileField, 4> file_fields{{{"hair", "model", &BakeRequest::hair},
-                                                {"environment", "environment", &BakeRequest::environment},
-                                                {"occluder", "mesh", &BakeRequest::occluder},
-                                                {"receiver", "mesh", &BakeRequest::receiver}}};
-
-void resolve_files(Sql& sql, BakeRequest& request, Json& names) {
-    for (const FileField& file : file_fields) {
+/// Replaces names by digests; returns the names: {"environment": {"path", "version"}}.
+Json resolve_files(Sql& sql, BakeRequest& request) {
+    Json names = Json::object();
+    for (const FileField& file : file_fields()) {
         std::optional<std::string>& value = request.*file.value;
         if (!value) continue;
         const Resolved resolved = resolve(sql, *value, file.kind, file.name);
         value = "sha256:" + resolved.digest;
         if (!resolved.name.is_null()) names[file.name] = resolved.name;
     }
+    return names;
 }
 
-int take_priority(Json& body) {
+/// A body taken apart.
+struct Body {
+    std::string request;          ///< JSON
+    std::optional<int> priority;  ///< as given
+};
+
+Body split_body(const std::string& text) {
+    Json body = parse(text);
+    if (!body.is_object()) throw Refusal(Refused::unprocessable, "the body is not a JSON object");
     const auto found = body.find("priority");
-    if (found == body.end()) return 0;
+    if (found == body.end()) return {text, std::nullopt};
     const Json value = *found;
-    body.erase("priority");
     if (!value.is_number_integer() || value < -10 || value > 10)
         throw Refusal(Refused::unprocessable,
                       "priority is " + value.dump().substr(0, 40) + "; allowed is an integer from -10 to 10",
                       "priority");
-    return value.get<int>();
+    body.erase("priority");
+    return {body.dump(-1, ' ', false, Json::error_handler_t::replace), value.get<int>()};
 }
 
-/// What is computed needs its files; what is stored does not.
+/// A stage that is stored needs no files any more.
 void check_inputs_stored(Sql& sql, const BakeRequest& request, const StagePlan& stage) {
     if (is_stored(sql, stage)) return;
-    for (const FileField& file : file_fields) {
+    for (const FileField& file : file_fields()) {
         const std::optional<std::string>& value = request.*file.value;
         if (!value) continue;
         const std::string digest = value->substr(std::strlen("sha256:"));
@@ -103,30 +105,41 @@ void check_inputs_stored(Sql& sql, const BakeRequest& request, const StagePlan& 
 
 }  // namespace
 
-AskedBake read_bake_request(Sql& sql, const std::string& text) {
-    Json body = parse(text);
-    if (!body.is_object()) throw Refusal(Refused::unprocessable, "the body is not a JSON object");
+AskedBake read_bake_request(Sql& sql, const std::string& text, const std::optional<std::string>& changes) {
+    const Body body = split_body(text), change = changes ? split_body(*changes) : Body();
     AskedBake asked;
-    const bool as_it_is = !body.contains("priority");
-    asked.priority = take_priority(body);
-    Json names = Json::object();
+    asked.priority = change.priority ? *change.priority : body.priority.value_or(0);
     try {
-        merge_json(asked.request, as_it_is ? text : body.dump(-1, ' ', false, Json::error_handler_t::replace),
-                   "the request");
+        asked.warnings = merge_json(asked.request, body.request, "the request");
+        if (changes) asked.warnings = merge_json(asked.request, change.request, "the request");
         validate(asked.request);
     } catch (const Error& error) {
         throw Refusal(Refused::unprocessable, error.what(), error.field()).at(pointer_to(error.field()));
     }
-    resolve_files(sql, asked.request, names);
-    asked.names = names.dump();
+    asked.names = resolve_files(sql, asked.request).dump();
     return asked;
+}
+
+std::vector<std::string> lighting_blocks() {
+    std::vector<std::string> blocks;
+    const auto reads = [](std::span<const std::string_view> list, std::string_view name) {
+        return std::find(list.begin(), list.end(), name) != list.end();
+    };
+    for (const Stage& stage : stages())
+        for (const std::string_view block : stage.settings)
+            if (reads(stage.inputs, "environment") && std::find(blocks.begin(), blocks.end(), block) == blocks.end())
+                blocks.emplace_back(block);
+    for (const Stage& stage : stages())
+        if (!reads(stage.inputs, "environment"))
+            std::erase_if(blocks, [&](const std::string& block) { return reads(stage.settings, block); });
+    return blocks;
 }
 
 BakePlan plan_bake(Sql& sql, const AskedBake& asked) {
     BakePlan plan = plan_bake(asked.request);
     plan.names = asked.names;
     plan.priority = asked.priority;
-    for (const StagePlan* stage : plan.stages()) check_inputs_stored(sql, asked.request, *stage);
+    for (const StagePlan& stage : plan.stages) check_inputs_stored(sql, asked.request, stage);
     return plan;
 }
 

@@ -6,7 +6,10 @@
 
 #include "core/base/digest.h"
 #include "server/jobs/bake_manifest.h"
-#include "server/jobs/words.h"
+#include "server/jobs/queue.h"
+#include "server/jobs/time_text.h"
+#include "server/store/blob_store.h"
+#include "server/store/database.h"
 #include "server/store/refusal.h"
 
 namespace hairbake {
@@ -14,30 +17,37 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// 0 id, 1 state, 2 request, 3 names, 4 hair, 5 environment, 6 priority, 7 transmittance, 8 irradiance, 9 attempts, 10
-// error, 11 created, 12 finished, 13 seq
+// 0 id, 1 state, 2 request, 3 names, 4 hair, 5 environment, 6 priority, 7 attempts, 8 error, 9 created, 10 finished,
+// 11 seq
 constexpr const char* bake_columns =
-    "SELECT id, state, request, names, hair, environment, priority, transmittance, irradiance, attempts, error, "
-    "created, finished, b.seq FROM bakes b ";
+    "SELECT id, state, request, names, hair, environment, priority, attempts, error, created, finished, b.seq "
+    "FROM bakes b ";
+// Of the stages of a bake: 0 kind, 1 key, 2 state, 3 attempts, 4 started, 5 manifest
+constexpr const char* stage_rows =
+    "SELECT s.kind, s.key, s.state, s.attempts, s.started, s.manifest FROM bake_stages m JOIN stages s ON s.key = "
+    "m.stage WHERE m.bake = ? ORDER BY m.seq";
+
+std::vector<SqlRow> stages_of(Sql& sql, const SqlRow& bake) { return sql.rows(stage_rows, {bake.integer(11)}); }
 
 [[noreturn]] void refuse_unknown(const std::string& id) {
     throw Refusal(Refused::not_found, "there is no bake " + id.substr(0, 64));
 }
 
-/// State of one stage, how far it is and how long it may still take.
+/// One stage of a bake.
 struct StageView {
     Json json;
-    double fraction = 0, seconds_left = 0;
+    double fraction = 0;      ///< of the stage's work
+    double seconds_left = 0;  ///< an estimate; 0 when there is none
 };
 
-StageView stage_view(Sql& sql, Queue& queue, const std::string& key) {
-    const auto row = sql.rows("SELECT kind, state, attempts, started FROM stages WHERE key = ?", {key}).at(0);
-    StageView view{{{"kind", row.text(0)}, {"key", key}, {"state", row.text(1)}, {"attempts", row.integer(2)}}, 0, 0};
-    if (row.text(1) == "done") view.fraction = 1;
-    if (const auto progress = queue.progress_of(key); progress && row.text(1) == "running") {
+StageView stage_view(Queue& queue, const SqlRow& row) {
+    StageView view{{{"kind", row.text(0)}, {"key", row.text(1)}, {"state", row.text(2)}, {"attempts", row.integer(3)}}};
+    const std::optional<JobState> state = job_state(row.text(2));
+    if (state == JobState::done) view.fraction = 1;
+    if (const auto progress = queue.progress_of(row.text(1)); progress && state == JobState::running) {
         view.fraction = progress->fraction;
         view.json["phase"] = progress->phase;
-        if (view.fraction > 0.05) view.seconds_left = (now() - row.number(3)) * (1 - view.fraction) / view.fraction;
+        if (view.fraction > 0.05) view.seconds_left = (now() - row.number(4)) * (1 - view.fraction) / view.fraction;
     }
     view.json["fraction"] = std::round(view.fraction * 1000) / 1000;
     return view;
@@ -47,16 +57,13 @@ Json file_links(Sql& sql, const SqlRow& bake) {
     Json files = Json::array();
     const std::string base = "/v1/bakes/" + bake.text(0) + "/files/";
     files.push_back({{"name", "manifest.json"}, {"href", base + "manifest.json"}});
-    for (const std::size_t column : {7, 8})
-        if (!bake.null(column))
-            for (const SqlRow& file :
-                 sql.rows("SELECT s.kind, f.name, f.sha256, f.bytes FROM stage_files f JOIN stages s ON "
-                          "s.key = f.stage WHERE f.stage = ? ORDER BY f.name",
-                          {bake.text(column)})) {
-                const std::string name = file_name_in_bake(file.text(0), file.text(1));
-                files.push_back(
-                    {{"name", name}, {"sha256", file.text(2)}, {"bytes", file.integer(3)}, {"href", base + name}});
-            }
+    for (const SqlRow& file :
+         sql.rows("SELECT m.kind, f.name, f.sha256, f.bytes FROM bake_stages m JOIN stage_files f ON f.stage = m.stage "
+                  "WHERE m.bake = ? ORDER BY m.seq, f.name",
+                  {bake.integer(11)})) {
+        const std::string name = file_name_in_bake(file.text(0), file.text(1));
+        files.push_back({{"name", name}, {"sha256", file.text(2)}, {"bytes", file.integer(3)}, {"href", base + name}});
+    }
     return files;
 }
 
@@ -66,17 +73,17 @@ Json short_view(const SqlRow& row) {
               {"model", row.null(4) ? Json() : Json(row.text(4))},
               {"environment", row.null(5) ? Json() : Json(row.text(5))},
               {"priority", row.integer(6)},
-              {"attempts", row.integer(9)},
-              {"created", time_text(row.number(11))},
-              {"finished", row.null(12) ? Json() : Json(time_text(row.number(12)))}};
+              {"attempts", row.integer(7)},
+              {"created", time_text(row.number(9))},
+              {"finished", row.null(10) ? Json() : Json(time_text(row.number(10)))}};
     json["names"] = Json::parse(row.text(3));
-    json["error"] = row.null(10) ? Json() : Json::parse(row.text(10));
+    json["error"] = row.null(8) ? Json() : Json::parse(row.text(8));
     json["links"] = {{"self", "/v1/bakes/" + row.text(0)}};
     return json;
 }
 
-/// Of a bake that was asked by several names for one field, the one that the list is about.
-void tell_name(Sql& sql, const std::string& path, Json& view) {
+/// A bake may have been asked by several names for one field. The list of a name shows that one.
+void show_name(Sql& sql, const std::string& path, Json& view) {
     for (const SqlRow& row : sql.rows("SELECT field, version FROM bake_names WHERE bake = ? AND path = ?",
                                       {view["id"].get<std::string>(), path}))
         view["names"][row.text(0)] = {{"path", path}, {"version", row.integer(1)}};
@@ -87,8 +94,9 @@ struct Selection {
     std::vector<SqlValue> values;
 };
 
-/// One page of the filtered bakes, and one more. The bakes of a batch or of a name are found by its own index, newest
-/// first, and no more of them are read than the page needs; a name may have a bake by several fields.
+/// One page of the filtered bakes, newest first, and one row more, which tells whether there is a next page. The bakes
+/// of a batch or a name have indexes of their own, so that only the rows of the page are read. A name may have a bake
+/// by several fields, hence GROUP BY.
 Selection select_bakes(const BakeFilter& filter) {
     std::string from = "WHERE b.seq < ?", order = " ORDER BY b.seq DESC LIMIT ?";
     if (!filter.batch.empty()) {
@@ -109,7 +117,7 @@ Selection select_bakes(const BakeFilter& filter) {
         add(filter.name, "");
     else
         add(filter.name, " AND b.id IN (SELECT bake FROM bake_names WHERE path = ?)");
-    add(filter.state, " AND state = ?");
+    add(filter.state ? name_of(*filter.state) : "", " AND state = ?");
     add(filter.model, " AND hair = ?");
     add(filter.environment, " AND environment = ?");
     selection.statement += order;
@@ -122,9 +130,8 @@ Json full_view(Sql& sql, Queue& queue, const SqlRow& row) {
     json["stages"] = Json::array();
     double fraction = 0, seconds_left = 0;
     int stages = 0;
-    for (const std::size_t column : {7, 8}) {
-        if (row.null(column)) continue;
-        const StageView view = stage_view(sql, queue, row.text(column));
+    for (const SqlRow& stage : stages_of(sql, row)) {
+        const StageView view = stage_view(queue, stage);
         json["stages"].push_back(view.json);
         fraction += view.fraction;
         seconds_left = std::max(seconds_left, view.seconds_left);
@@ -137,15 +144,16 @@ Json full_view(Sql& sql, Queue& queue, const SqlRow& row) {
     return json;
 }
 
-std::string stage_manifest(Sql& sql, const SqlRow& bake, std::size_t column) {
-    return bake.null(column) ? std::string()
-                             : sql.rows("SELECT manifest FROM stages WHERE key = ?", {bake.text(column)}).at(0).text(0);
+std::string manifest_of(Sql& sql, const SqlRow& bake) {
+    std::vector<StageManifest> parts;
+    for (const SqlRow& stage : stages_of(sql, bake)) parts.push_back({stage.text(0), stage.text(5)});
+    return make_bake_manifest(bake.text(0), bake.text(2), parts);
 }
 
 }  // namespace
 
 BakeView Bakes::get(const std::string& id) {
-    if (auto view = done_.find(id)) return std::move(*view);
+    if (auto view = done_.find(database_.version(), id)) return std::move(*view);
     std::uint64_t version = 0;
     bool done = false;
     BakeView answer;
@@ -169,9 +177,9 @@ std::string Bakes::list(const BakeFilter& filter) {
         const auto limit = static_cast<std::size_t>(filter.limit);
         for (std::size_t i = 0; i < std::min(limit, rows.size()); ++i) {
             answer["bakes"].push_back(short_view(rows[i]));
-            if (!filter.name.empty()) tell_name(sql, filter.name, answer["bakes"].back());
+            if (!filter.name.empty()) show_name(sql, filter.name, answer["bakes"].back());
         }
-        if (rows.size() > limit) answer["next"] = std::to_string(rows[limit - 1].integer(13));
+        if (rows.size() > limit) answer["next"] = std::to_string(rows[limit - 1].integer(11));
     });
     return answer.dump();
 }
@@ -185,8 +193,7 @@ BakeFile Bakes::file(const std::string& id, const std::string& name) {
         if (bake.text(1) != "done")
             throw Refusal(Refused::conflict, "the bake is " + bake.text(1) + "; only a done one has files");
         if (name == "manifest.json") {
-            file.text =
-                make_bake_manifest(id, bake.text(2), stage_manifest(sql, bake, 7), stage_manifest(sql, bake, 8));
+            file.text = manifest_of(sql, bake);
             file.etag = Digest().add(file.text).hex();
             return;
         }

@@ -1,18 +1,22 @@
-// What can be asked about bakes, and their files.
+// Bakes as the HTTP interface shows them: views, lists, files.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <string>
 
-#include "server/jobs/kept_views.h"
-#include "server/jobs/queue.h"
+#include "server/jobs/job_state.h"
+#include "server/jobs/view_cache.h"
 
 namespace hairbake {
 
+class Database;
+class Queue;
+
 /// Empty fields do not filter.
 struct BakeFilter {
-    std::string state{}, model{}, environment{}, name{}, batch{};  ///< digests, a name's path, a batch's id
+    std::optional<JobState> state{};
+    std::string model{}, environment{}, name{}, batch{};  ///< digests, a name's path, a batch's id
     std::int64_t cursor = INT64_MAX;
     int limit = 50;
 };
@@ -32,19 +36,20 @@ struct BakeView {
 /// Thread-safe. Answers are JSON objects.
 class Bakes {
 public:
-    Bakes(Database& database, Queue& queue) : database_(database), queue_(queue), done_(database) {}
+    Bakes(Database& database, Queue& queue) : database_(database), queue_(queue) {}
 
     /// Throws Refusal(not_found).
     BakeView get(const std::string& id);
     /// {"bakes": [...], "next": cursor or null}, newest first, without their requests.
     std::string list(const BakeFilter& filter);
-    /// Throws Refusal(not_found); Refusal(conflict) while the bake is not done.
+    /// Throws Refusal(not_found).
+    /// Throws Refusal(conflict) while the bake is not done.
     BakeFile file(const std::string& id, const std::string& name);
 
 private:
     Database& database_;
     Queue& queue_;
-    KeptViews<BakeView> done_;  ///< of done bakes: how far others are is not in the database
+    ViewCache<BakeView> done_;  ///< of done bakes alone: the progress of others is not in the database
 };
 
 }  // namespace hairbake

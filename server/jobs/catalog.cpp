@@ -5,8 +5,12 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
-#include "server/jobs/words.h"
+#include "server/jobs/runner.h"
+#include "server/jobs/task_follower.h"
+#include "server/jobs/time_text.h"
 #include "server/jobs/work_folder.h"
+#include "server/store/blob_store.h"
+#include "server/store/database.h"
 #include "server/store/refusal.h"
 
 namespace hairbake {
@@ -32,12 +36,10 @@ Json entry(const std::string& kind, const SqlRow& row) {
     throw Refusal(Refused::not_found, "there is no " + kind + " " + digest.substr(0, 64));
 }
 
-/// Why the file could not be read. A worker that dies again and again is the file's doing.
+/// Throws what the failed inspection means to the client. A file that kills every worker is the file's fault.
 [[noreturn]] void refuse_outcome(const Outcome& outcome) {
-    if (outcome.end == Outcome::End::failed && outcome.kind == "out_of_resources")
-        throw Error(ErrorKind::out_of_resources, outcome.message);
-    if (outcome.end == Outcome::End::failed && outcome.kind == "internal")
-        throw Error(ErrorKind::internal, outcome.message);
+    const bool is_ours = outcome.kind == ErrorKind::out_of_resources || outcome.kind == ErrorKind::internal;
+    if (outcome.end == Outcome::End::failed && is_ours) throw Error(outcome.kind, outcome.message);
     throw Refusal(Refused::unprocessable, outcome.message, "sha256");
 }
 
@@ -66,17 +68,17 @@ void Catalog::inspect(const std::string& kind, const std::string& digest) {
         std::counting_semaphore<2>& readers;
         ~Release() { readers.release(); }
     } const release{readers_};
-    const WorkFolder folder(store_.incoming_folder());
     const std::string path = store_.path_of(digest).string();
-    Task task;
-    task.input = Json{{"task", "inspect"}, {"kind", kind},
-                      {"file", path},      {"folder", folder.path.string()},
-                      {"threads", 1},      {"names", {{path, "sha256:" + digest}}}}
-                     .dump();
-    Outcome outcome = runner_.run(task);
-    if (outcome.end == Outcome::End::died) outcome = runner_.run(task);  // killed from outside, or by the file?
+    const WorkFolder folder(store_.incoming_folder(), Json{{"task", "inspect"},
+                                                           {"kind", kind},
+                                                           {"file", path},
+                                                           {"threads", 1},
+                                                           {"names", {{path, "sha256:" + digest}}}}
+                                                          .dump());
+    Outcome outcome = run(folder);
+    if (outcome.end == Outcome::End::died) outcome = run(folder);  // the machine may have killed it, not the file
     if (outcome.end != Outcome::End::done) refuse_outcome(outcome);
-    const fs::path picture = folder.path / "thumbnail.png";
+    const fs::path picture = folder.path() / "thumbnail.png";
     const std::string thumbnail = digest_of_file(picture);
     const auto held = database_.lock();  // no eviction may come between blob and row
     store_.adopt(picture, thumbnail);
@@ -84,6 +86,11 @@ void Catalog::inspect(const std::string& kind, const std::string& digest) {
         sql.run("INSERT OR IGNORE INTO inputs(kind, sha256, facts, thumbnail, created) VALUES(?, ?, ?, ?, ?)",
                 {kind, digest, outcome.facts, thumbnail, now()});
     });
+}
+
+Outcome Catalog::run(const WorkFolder& folder) {
+    return follow_task(
+        runner_, runner_.start(folder.path()), folder, [] { return Wish::go_on; }, [](std::string_view, double) {});
 }
 
 std::string Catalog::get(const std::string& kind, const std::string& digest) {
@@ -127,8 +134,8 @@ void Catalog::remove(const std::string& kind, const std::string& digest) {
         if (sql.rows("SELECT 1 FROM inputs WHERE kind = ? AND sha256 = ?", {kind, digest}).empty())
             refuse_unknown(kind, digest);
         const auto live = sql.rows(
-            "SELECT b.id FROM stage_inputs i JOIN bakes b ON b.transmittance = i.stage OR b.irradiance = "
-            "i.stage WHERE i.sha256 = ? AND b.state IN ('queued', 'running') LIMIT 1",
+            "SELECT b.id FROM stage_inputs i JOIN bake_stages m ON m.stage = i.stage JOIN bakes b ON b.seq = m.bake "
+            "WHERE i.sha256 = ? AND b.state IN ('queued', 'running') LIMIT 1",
             {digest});
         if (!live.empty())
             throw Refusal(Refused::conflict, "the bake " + live[0].text(0) + " still needs it; cancel that first");

@@ -4,8 +4,9 @@
 #include <cctype>
 #include <nlohmann/json.hpp>
 
-#include "server/jobs/words.h"
+#include "server/jobs/time_text.h"
 #include "server/store/blob_store.h"
+#include "server/store/database.h"
 #include "server/store/refusal.h"
 
 namespace hairbake {
@@ -34,6 +35,18 @@ Json version_json(const std::string& kind, const std::string& path, const SqlRow
             {"created", time_text(row.number(first + 4))}};
 }
 
+Json name_json(Sql& sql, const std::string& kind, const std::string& path) {
+    const auto rows = sql.rows(
+        "SELECT version, sha256, note, token, created FROM names WHERE kind = ? AND path = ? "
+        "ORDER BY version DESC",
+        {kind, path});
+    if (rows.empty()) throw Refusal(Refused::not_found, "there is no name " + kind + "/" + path);
+    Json answer = version_json(kind, path, rows[0], 0);
+    answer["versions"] = Json::array();
+    for (const SqlRow& row : rows) answer["versions"].push_back(version_json(kind, path, row, 0));
+    return answer;
+}
+
 }  // namespace
 
 bool is_name_kind(const std::string& kind) { return kind == "model" || kind == "environment" || kind == "mesh"; }
@@ -54,22 +67,52 @@ bool is_name_path(const std::string& path) {
     return true;
 }
 
-std::string Names::put(Sql& sql, const std::string& kind, const std::string& path, const std::string& sha256,
+std::string Names::put(const std::string& kind, const std::string& path, const std::string& sha256,
                        const std::string& note, const std::string& token) {
     check_name(kind, path);
-    if (!is_digest(sha256) || sql.rows("SELECT 1 FROM blobs WHERE sha256 = ?", {sha256}).empty())
-        throw Refusal(Refused::unprocessable,
-                      "sha256 is \"" + sha256.substr(0, 64) + "\"; allowed is the digest of a stored blob", "sha256");
     if (note.size() > longest_note) throw Refusal(Refused::unprocessable, "note is longer than 500 bytes", "note");
-    const auto newest = sql.rows(
-        "SELECT version, sha256 FROM names WHERE kind = ? AND path = ? ORDER BY version DESC LIMIT 1", {kind, path});
-    if (newest.empty() || newest[0].text(1) != sha256)
-        sql.run("INSERT INTO names(kind, path, version, sha256, note, token, created) VALUES(?, ?, ?, ?, ?, ?, ?)",
+    std::string answer;
+    database_.write([&](Sql& sql) {
+        if (!is_digest(sha256) || sql.rows("SELECT 1 FROM blobs WHERE sha256 = ?", {sha256}).empty())
+            throw Refusal(Refused::unprocessable,
+                          "sha256 is \"" + sha256.substr(0, 64) + "\"; allowed is the digest of a stored blob",
+                          "sha256");
+        const auto newest =
+            sql.rows("SELECT version, sha256 FROM names WHERE kind = ? AND path = ? ORDER BY version DESC LIMIT 1",
+                     {kind, path});
+        if (newest.empty() || newest[0].text(1) != sha256)
+            sql.run(
+                "INSERT INTO names(kind, path, version, sha256, note, token, created) VALUES(?, ?, ?, ?, ?, ?, ?)",
                 {kind, path, newest.empty() ? std::int64_t(1) : newest[0].integer(0) + 1, sha256, note, token, now()});
-    return get(sql, kind, path);
+        answer = name_json(sql, kind, path).dump();
+    });
+    return answer;
 }
 
-NamedDigest Names::resolve(Sql& sql, const std::string& kind, const std::string& name, const std::string& field) {
+std::string Names::get(const std::string& kind, const std::string& path) {
+    check_name(kind, path);
+    std::string answer;
+    database_.read([&](Sql& sql) { answer = name_json(sql, kind, path).dump(); });
+    return answer;
+}
+
+std::string Names::list(const std::string& kind, const std::string& cursor, int limit) {
+    if (!is_name_kind(kind)) check_name(kind, "x");
+    const auto most = static_cast<std::size_t>(limit);
+    Json answer{{"names", Json::array()}, {"next", nullptr}};
+    database_.read([&](Sql& sql) {
+        const auto rows = sql.rows(
+            "SELECT path, max(version), sha256, note, token, created FROM names WHERE kind = ? AND path > ? GROUP BY "
+            "path ORDER BY path LIMIT ?",
+            {kind, cursor, std::int64_t(limit) + 1});
+        for (std::size_t i = 0; i < std::min(most, rows.size()); ++i)
+            answer["names"].push_back(version_json(kind, rows[i].text(0), rows[i], 1));
+        if (rows.size() > most) answer["next"] = rows[most - 1].text(0);
+    });
+    return answer.dump();
+}
+
+NamedDigest resolve_name(Sql& sql, const std::string& kind, const std::string& name, const std::string& field) {
     const std::size_t at = name.find('@');
     const std::string path = name.substr(0, at), wanted = at == std::string::npos ? "" : name.substr(at + 1);
     const bool number = wanted.size() < 10 &&
@@ -87,36 +130,6 @@ NamedDigest Names::resolve(Sql& sql, const std::string& kind, const std::string&
             field + " asks for name:" + name.substr(0, longest_path) + ", which is no name of the kind " + kind, field)
             .at("/" + field);
     return {path, rows[0].text(1), rows[0].integer(0)};
-}
-
-std::string Names::get(Sql& sql, const std::string& kind, const std::string& path) {
-    check_name(kind, path);
-    const auto rows = sql.rows(
-        "SELECT version, sha256, note, token, created FROM names WHERE kind = ? AND path = ? "
-        "ORDER BY version DESC",
-        {kind, path});
-    if (rows.empty()) throw Refusal(Refused::not_found, "there is no name " + kind + "/" + path);
-    Json answer = version_json(kind, path, rows[0], 0);
-    answer["versions"] = Json::array();
-    for (const SqlRow& row : rows) answer["versions"].push_back(version_json(kind, path, row, 0));
-    return answer.dump();
-}
-
-std::string Names::list(Sql& sql, const std::string& kind, const std::string& cursor, int limit) {
-    if (!is_name_kind(kind)) check_name(kind, "x");
-    const auto rows = sql.rows(
-        "SELECT path, max(version), sha256, note, token, created FROM names WHERE kind = ? AND path > ? GROUP BY path "
-        "ORDER BY path LIMIT ?",
-        {kind, cursor, std::int64_t(limit) + 1});
-    Json answer{{"names", Json::array()}, {"next", nullptr}};
-    for (const SqlRow& row : rows) {
-        if (answer["names"].size() == static_cast<std::size_t>(limit)) {
-            answer["next"] = answer["names"].back()["path"];
-            break;
-        }
-        answer["names"].push_back(version_json(kind, row.text(0), row, 1));
-    }
-    return answer.dump();
 }
 
 }  // namespace hairbake

@@ -1,12 +1,13 @@
-// Names for digests, because artists do not think in digests. Every earlier version stays.
+// Names that stand for digests. A name keeps all its versions.
 #pragma once
 
-#include <optional>
+#include <cstdint>
 #include <string>
 
-#include "server/store/database.h"
-
 namespace hairbake {
+
+class Database;
+class Sql;
 
 /// "model", "environment" and "mesh".
 bool is_name_kind(const std::string& kind);
@@ -19,18 +20,30 @@ struct NamedDigest {
     std::int64_t version = 0;
 };
 
-/// All functions take part in the caller's transaction. Answers are JSON objects.
+/// Thread-safe. Answers are JSON objects.
 class Names {
 public:
-    /// Points the name at a stored blob; the same digest again makes no new version. Throws Refusal.
-    static std::string put(Sql& sql, const std::string& kind, const std::string& path, const std::string& sha256,
-                           const std::string& note, const std::string& token);
-    /// The newest version, or version n of "path@n". Throws Refusal(unprocessable) naming `field`.
-    static NamedDigest resolve(Sql& sql, const std::string& kind, const std::string& name, const std::string& field);
-    /// All versions, newest first. Throws Refusal(not_found).
-    static std::string get(Sql& sql, const std::string& kind, const std::string& path);
-    /// {"names": [...], "next": cursor or null}: newest versions of a kind by path, after `cursor`.
-    static std::string list(Sql& sql, const std::string& kind, const std::string& cursor, int limit);
+    explicit Names(Database& database) : database_(database) {}
+
+    /// Points the name at a stored blob. The digest that it has already makes no new version.
+    /// `token` names the caller.
+    /// Throws Refusal.
+    std::string put(const std::string& kind, const std::string& path, const std::string& sha256,
+                    const std::string& note, const std::string& token);
+
+    /// All versions, newest first.
+    /// Throws Refusal(not_found).
+    std::string get(const std::string& kind, const std::string& path);
+
+    /// {"names": [...], "next": cursor or null}: the newest versions of a kind's names, sorted by path, after `cursor`.
+    std::string list(const std::string& kind, const std::string& cursor, int limit);
+
+private:
+    Database& database_;
 };
+
+/// The newest version of the name "path", or version n of "path@n", in the caller's transaction.
+/// Throws Refusal(unprocessable) naming `field`.
+NamedDigest resolve_name(Sql& sql, const std::string& kind, const std::string& name, const std::string& field);
 
 }  // namespace hairbake

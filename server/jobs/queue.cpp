@@ -1,76 +1,61 @@
 #include "server/jobs/queue.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
+#include "server/store/blob_store.h"
+#include "server/store/database.h"
 #include "server/store/refusal.h"
 
 namespace hairbake {
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-std::string error_json(const StageError& error) {
-    return Json{{"kind", error.kind}, {"message", error.message}, {"field", error.field}}.dump(
-        -1, ' ', false, Json::error_handler_t::replace);
-}
-
-SqlValue or_null(const std::optional<StagePlan>& stage) { return stage ? SqlValue(stage->key) : SqlValue(nullptr); }
-
-SqlValue or_null(const std::string& text) { return text.empty() ? SqlValue(nullptr) : SqlValue(text); }
-
-bool is_live(const std::string& state) { return state == "queued" || state == "running"; }
-
-bool needed(Sql& sql, const std::string& stage) {
-    return !sql.rows(
-                   "SELECT 1 FROM bakes WHERE transmittance = ? AND state IN ('queued', 'running') UNION ALL "
-                   "SELECT 1 FROM bakes WHERE irradiance = ? AND state IN ('queued', 'running') LIMIT 1",
-                   {stage, stage})
-                .empty();
-}
-
-/// Ids of the bakes of a stage whose state is one of `states` ("'queued', 'running'").
-std::vector<std::string> bakes_of(Sql& sql, const std::string& stage, const std::string& states) {
-    std::vector<std::string> ids;
-    for (const SqlRow& row :
-         sql.rows("SELECT id FROM bakes WHERE transmittance = ? AND state IN (" + states +
-                      ") UNION SELECT id FROM bakes WHERE irradiance = ? AND state IN (" + states + ")",
-                  {stage, stage}))
-        ids.push_back(row.text(0));
-    return ids;
-}
-
-/// A name that a bake is asked by now is noted beside those that it was asked by before; the bake itself tells the last
-/// one of each field.
-void note_names(Sql& sql, const BakePlan& plan) {
-    sql.run("UPDATE bakes SET names = json_patch(names, ?) WHERE id = ?", {plan.names, plan.id});
-    sql.run(
-        "INSERT OR REPLACE INTO bake_names SELECT ?, key, json_extract(value, '$.path'), json_extract(value, "
-        "'$.version'), (SELECT seq FROM bakes WHERE id = ?) FROM json_each(?)",
-        {plan.id, plan.id, plan.names});
-}
-
-}  // namespace
 
 Queue::Queue(Database& database, BlobStore& store, int max_crashes)
     : database_(database), store_(store), max_crashes_(max_crashes) {}
 
-std::size_t Queue::recover() {
+// ---- boot ----------------------------------------------------------------------------------------------------------
+
+std::vector<StartedTask> Queue::started_tasks(const std::string& runner) {
+    std::vector<StartedTask> tasks;
+    database_.read([&](Sql& sql) {
+        for (const SqlRow& row :
+             sql.rows("SELECT key, handle, work_folder FROM stages WHERE state = 'running' AND runner = ?", {runner}))
+            tasks.push_back({row.text(0), row.text(1), row.text(2)});
+    });
+    return tasks;
+}
+
+std::size_t Queue::recover(const std::vector<StartedTask>& surviving) {
     std::size_t lost = 0;
+    const auto survives = [&](const std::string& stage) {
+        return std::any_of(surviving.begin(), surviving.end(),
+                           [&](const StartedTask& task) { return task.stage == stage; });
+    };
     database_.write([&](Sql& sql) {
-        std::vector<std::string> interrupted;
         for (const SqlRow& row : sql.rows("SELECT key FROM stages WHERE state = 'running'"))
-            interrupted.push_back(row.text(0));
-        for (const std::string& stage : interrupted) {
-            sql.run("UPDATE stages SET state = ? WHERE key = ?", {needed(sql, stage) ? "queued" : "cancelled", stage});
-            settle_bakes_of(sql, stage);
-        }
+            if (!survives(row.text(0))) release_stage(sql, row.text(0));
         lost = requeue_incomplete(sql);
+    });
+    database_.read([&](Sql& sql) {
+        for (const StartedTask& task : surviving) resume(sql, task);
     });
     return lost;
 }
 
-/// It trusts no list of what was just found missing: an earlier start may have died after it had forgotten the blobs.
+void Queue::resume(Sql& sql, const StartedTask& task) {
+    const SqlRow row =
+        sql.rows("SELECT kind, core_key, request, attempts FROM stages WHERE key = ?", {task.stage}).at(0);
+    ClaimedStage claimed{task.stage,
+                         row.text(0),
+                         row.text(1),
+                         row.text(2),
+                         static_cast<int>(row.integer(3)),
+                         std::make_shared<std::atomic<bool>>(!is_needed(sql, task.stage)),
+                         task};
+    const std::lock_guard lock(mutex_);
+    running_[claimed.key] = {claimed.cancel, {}};
+    resumed_.push_back(std::move(claimed));
+}
+
+/// Looks for missing blobs in the whole database: an earlier start may have died after it had forgotten some.
 std::size_t Queue::requeue_incomplete(Sql& sql) {
     const std::string not_stored = "NOT EXISTS(SELECT 1 FROM blobs b WHERE b.sha256 = ";
     sql.run("UPDATE inputs SET thumbnail = NULL WHERE thumbnail IS NOT NULL AND " + not_stored + "thumbnail)");
@@ -82,49 +67,42 @@ std::size_t Queue::requeue_incomplete(Sql& sql) {
 
 // ---- taking requests -----------------------------------------------------------------------------------------------
 
-/// One file stands for its stage: see oldest_stage() of store/eviction.cpp.
+/// A stage was last used when its most recently used file was (store/eviction.cpp), so touching one is enough.
 void Queue::touch_stage(Sql& sql, const std::string& stage) {
     for (const SqlRow& row : sql.rows("SELECT sha256 FROM stage_files WHERE stage = ? LIMIT 1", {stage}))
         store_.touch(row.text(0));
 }
 
 void Queue::add_stage(Sql& sql, const StagePlan& stage, int priority) {
-    const auto rows = sql.rows("SELECT state FROM stages WHERE key = ?", {stage.key});
-    if (rows.empty()) {
+    const std::optional<JobState> state = state_of_stage(sql, stage.key);
+    if (!state) {
         sql.run(
             "INSERT INTO stages(key, kind, core_key, state, request, priority, attempts, crashes, created) "
             "VALUES(?, ?, ?, 'queued', ?, ?, 0, 0, ?)",
             {stage.key, stage.kind, stage.core_key, stage.request, std::int64_t(priority), now()});
         for (const std::string& digest : stage.inputs)
             sql.run("INSERT INTO stage_inputs VALUES(?, ?)", {stage.key, digest});
-        return;
-    }
-    const std::string state = rows[0].text(0);
-    if (is_live(state))
+    } else if (is_live(*state)) {
         sql.run("UPDATE stages SET priority = max(priority, ?) WHERE key = ?", {std::int64_t(priority), stage.key});
-    else if (state == "done")
+    } else if (*state == JobState::done) {
         touch_stage(sql, stage.key);
-    else
+    } else {
         sql.run(
             "UPDATE stages SET state = 'queued', priority = ?, attempts = 0, crashes = 0, error = NULL WHERE key = ?",
             {std::int64_t(priority), stage.key});
+    }
 }
 
 Submitted Queue::add_bake(Sql& sql, const BakePlan& plan) {
-    const auto rows = sql.rows("SELECT state FROM bakes WHERE id = ?", {plan.id});
-    const std::string state = rows.empty() ? "" : rows[0].text(0);
-    if (state == "done") {
+    const std::optional<JobState> state = state_of_bake(sql, plan.id);
+    if (state == JobState::done) {
         note_names(sql, plan);
-        return {plan.id, state, note_done(sql, plan.id, plan.names)};
+        return {plan.id, *state, note_done(sql, plan.id, plan.names)};
     }
-    for (const StagePlan* stage : plan.stages()) add_stage(sql, *stage, plan.priority);
-    if (rows.empty())
-        sql.run(
-            "INSERT INTO bakes(id, state, request, names, hair, environment, priority, transmittance, irradiance, "
-            "attempts, created) VALUES(?, 'queued', ?, ?, ?, ?, ?, ?, ?, 1, ?)",
-            {plan.id, plan.request, plan.names, or_null(plan.hair), or_null(plan.environment),
-             std::int64_t(plan.priority), or_null(plan.transmittance), or_null(plan.irradiance), now()});
-    else if (is_live(state))
+    for (const StagePlan& stage : plan.stages) add_stage(sql, stage, plan.priority);
+    if (!state)
+        insert_bake(sql, plan);
+    else if (is_live(*state))
         sql.run("UPDATE bakes SET priority = max(priority, ?) WHERE id = ?", {std::int64_t(plan.priority), plan.id});
     else
         sql.run(
@@ -133,18 +111,14 @@ Submitted Queue::add_bake(Sql& sql, const BakePlan& plan) {
             {std::int64_t(plan.priority), plan.id});
     note_names(sql, plan);
     settle_bake(sql, plan.id);
-    const std::string after = sql.rows("SELECT state FROM bakes WHERE id = ?", {plan.id}).at(0).text(0);
-    return {plan.id, after, false};
+    return {plan.id, state_of_bake(sql, plan.id).value(), false};
 }
 
 bool Queue::note_done(Sql& sql, const std::string& bake, const std::string& names) {
     const auto rows = sql.rows(
-        "SELECT transmittance, irradiance FROM bakes WHERE id = ? AND state = 'done' AND json_patch(names, ?) = "
-        "json(names)",
-        {bake, names});
+        "SELECT 1 FROM bakes WHERE id = ? AND state = 'done' AND json_patch(names, ?) = json(names)", {bake, names});
     if (rows.empty()) return false;
-    for (const std::size_t column : {0, 1})
-        if (!rows[0].null(column)) touch_stage(sql, rows[0].text(column));
+    for (const std::string& stage : stages_of(sql, bake)) touch_stage(sql, stage);
     return true;
 }
 
@@ -162,84 +136,7 @@ std::vector<Submitted> Queue::submit(const std::vector<BakePlan>& plans, const s
     return answers;
 }
 
-// ---- states --------------------------------------------------------------------------------------------------------
-
-/// Makes a live bake's state what its stages' states say.
-void Queue::settle_bake(Sql& sql, const std::string& bake) {
-    const auto stages = sql.rows(
-        "SELECT s.key, s.state, s.error FROM bakes b JOIN stages s ON s.key = b.transmittance OR s.key = b.irradiance "
-        "WHERE b.id = ? AND b.state IN ('queued', 'running')",
-        {bake});
-    if (stages.empty()) return;
-    const auto in = [](const char* state) { return [state](const SqlRow& row) { return row.text(1) == state; }; };
-    const auto broken = std::find_if(stages.begin(), stages.end(), in("failed"));
-    if (broken != stages.end()) {
-        sql.run("UPDATE bakes SET state = 'failed', error = ?, finished = ? WHERE id = ?",
-                {broken->text(2), now(), bake});
-        for (const SqlRow& stage : stages) drop_unneeded(sql, stage.text(0));
-    } else if (std::all_of(stages.begin(), stages.end(), in("done"))) {
-        sql.run("UPDATE bakes SET state = 'done', finished = ? WHERE id = ?", {now(), bake});
-    } else {
-        const bool begun = std::any_of(stages.begin(), stages.end(), in("running")) ||
-                           std::any_of(stages.begin(), stages.end(), in("done"));
-        sql.run("UPDATE bakes SET state = ? WHERE id = ?", {begun ? "running" : "queued", bake});
-    }
-}
-
-void Queue::settle_bakes_of(Sql& sql, const std::string& stage) {
-    for (const std::string& bake : bakes_of(sql, stage, "'queued', 'running'")) settle_bake(sql, bake);
-}
-
-/// Cancels a live stage that no live bake needs.
-void Queue::drop_unneeded(Sql& sql, const std::string& stage) {
-    if (needed(sql, stage)) return;
-    sql.run("UPDATE stages SET state = 'cancelled' WHERE key = ? AND state = 'queued'", {stage});
-    const std::lock_guard lock(mutex_);
-    if (const auto running = running_.find(stage); running != running_.end()) *running->second.cancel = true;
-}
-
-void Queue::cancel(const std::string& bake) {
-    database_.write([&](Sql& sql) {
-        const auto rows = sql.rows("SELECT state, transmittance, irradiance FROM bakes WHERE id = ?", {bake});
-        if (rows.empty()) throw Refusal(Refused::not_found, "there is no bake " + bake.substr(0, 64));
-        if (!is_live(rows[0].text(0)))
-            throw Refusal(Refused::conflict,
-                          "the bake is " + rows[0].text(0) + "; only a queued or running one can be cancelled");
-        sql.run("UPDATE bakes SET state = 'cancelled', finished = ? WHERE id = ?", {now(), bake});
-        for (const std::size_t column : {1, 2})
-            if (!rows[0].null(column)) drop_unneeded(sql, rows[0].text(column));
-    });
-}
-
-/// A stored stage lost a file: it and its bakes start again, as far as their inputs are there.
-void Queue::requeue_stage(Sql& sql, const std::string& stage) {
-    const bool inputs_stored =
-        sql.rows(
-               "SELECT 1 FROM stage_inputs i WHERE stage = ? AND NOT EXISTS(SELECT 1 FROM blobs b "
-               "WHERE b.sha256 = i.sha256)",
-               {stage})
-            .empty();
-    sql.run("DELETE FROM stage_files WHERE stage = ?", {stage});
-    const StageError error{"bad_input", "a stored result was lost, and so was an input of it; send the input again",
-                           ""};
-    sql.run(
-        "UPDATE stages SET state = ?, manifest = NULL, attempts = 0, crashes = 0, error = ? WHERE key = ?",
-        {inputs_stored ? "queued" : "failed", inputs_stored ? SqlValue(nullptr) : SqlValue(error_json(error)), stage});
-    for (const std::string& bake : bakes_of(sql, stage, "'queued', 'running', 'done'")) {
-        sql.run("UPDATE bakes SET state = 'queued', finished = NULL WHERE id = ?", {bake});
-        settle_bake(sql, bake);
-    }
-}
-
-void Queue::blob_lost(Sql& sql, const std::string& digest) {
-    sql.run("UPDATE inputs SET thumbnail = NULL WHERE thumbnail = ?", {digest});
-    sql.run("DELETE FROM inputs WHERE sha256 = ?", {digest});
-    for (const SqlRow& row : sql.rows("SELECT DISTINCT stage FROM stage_files WHERE sha256 = ?", {digest}))
-        requeue_stage(sql, row.text(0));
-    wake();  // who claims waits for the writer's lock, and so for the commit
-}
-
-// ---- slots ---------------------------------------------------------------------------------------------------------
+// ---- claims --------------------------------------------------------------------------------------------------------
 
 void Queue::wake() {
     {
@@ -255,40 +152,58 @@ std::optional<ClaimedStage> Queue::claim() {
         {
             const std::lock_guard lock(mutex_);
             seen = changes_;
+            if (!resumed_.empty()) {
+                ClaimedStage resumed = std::move(resumed_.front());
+                resumed_.pop_front();
+                return resumed;
+            }
         }
-        std::optional<ClaimedStage> claimed;
-        auto held = database_.lock();  // until running_ knows the stage: a cancel must find it
-        database_.write([&](Sql& sql) {
-            const auto rows = sql.rows(
-                "SELECT key, kind, core_key, request, attempts FROM stages WHERE state = 'queued' "
-                "ORDER BY priority DESC, seq LIMIT 1");
-            if (rows.empty()) return;
-            claimed = {rows[0].text(0),
-                       rows[0].text(1),
-                       rows[0].text(2),
-                       rows[0].text(3),
-                       static_cast<int>(rows[0].integer(4)) + 1,
-                       std::make_shared<std::atomic<bool>>(false)};
-            sql.run("UPDATE stages SET state = 'running', attempts = attempts + 1, started = ? WHERE key = ?",
-                    {now(), claimed->key});
-            settle_bakes_of(sql, claimed->key);
-        });
+        if (std::optional<ClaimedStage> claimed = claim_queued()) return claimed;
         std::unique_lock lock(mutex_);
-        if (claimed) {
-            running_[claimed->key] = {claimed->cancel, {}};
-            if (stopping_) *claimed->cancel = true;  // stop() has walked the running ones already
-            return claimed;
-        }
-        held.unlock();
         changed_.wait(lock, [&] { return stopping_ || changes_ != seen; });
     }
     return std::nullopt;
 }
 
+/// Nothing when no stage is queued.
+std::optional<ClaimedStage> Queue::claim_queued() {
+    std::optional<ClaimedStage> claimed;
+    const auto held = database_.lock();  // until running_ has the stage, so that cancel() finds it
+    database_.write([&](Sql& sql) {
+        const auto rows = sql.rows(
+            "SELECT key, kind, core_key, request, attempts FROM stages WHERE state = 'queued' "
+            "ORDER BY priority DESC, seq LIMIT 1");
+        if (rows.empty()) return;
+        claimed = {rows[0].text(0),
+                   rows[0].text(1),
+                   rows[0].text(2),
+                   rows[0].text(3),
+                   static_cast<int>(rows[0].integer(4)) + 1,
+                   std::make_shared<std::atomic<bool>>(false)};
+        sql.run(
+            "UPDATE stages SET state = 'running', attempts = attempts + 1, started = ?, runner = NULL, handle = NULL, "
+            "work_folder = NULL WHERE key = ?",
+            {now(), claimed->key});
+        settle_bakes_of(sql, claimed->key);
+    });
+    if (!claimed) return std::nullopt;
+    const std::lock_guard lock(mutex_);
+    running_[claimed->key] = {claimed->cancel, {}};
+    if (stopping_) *claimed->cancel = true;  // stop() did not see this one
+    return claimed;
+}
+
+void Queue::started(const StartedTask& task, const std::string& runner) {
+    database_.write([&](Sql& sql) {
+        sql.run("UPDATE stages SET runner = ?, handle = ?, work_folder = ? WHERE key = ?",
+                {runner, task.handle, task.folder, task.stage});
+    });
+}
+
 void Queue::progress(const std::string& key, const std::string& phase, double fraction) {
     const std::lock_guard lock(mutex_);
     if (const auto running = running_.find(key); running != running_.end())
-        running->second.progress = {phase, fraction};
+        running->second.progress = {phase, std::max(fraction, running->second.progress.fraction)};
 }
 
 std::optional<StageProgress> Queue::progress_of(const std::string& key) {
@@ -337,15 +252,12 @@ void Queue::died(const ClaimedStage& stage, const std::string& how) {
     if (again)
         released(stage);
     else
-        failed(stage, {"internal", how + " (it was started " + std::to_string(max_crashes_ + 1) + " times)", ""});
+        failed(stage,
+               {ErrorKind::internal, how + " (it was started " + std::to_string(max_crashes_ + 1) + " times)", {}});
 }
 
 void Queue::released(const ClaimedStage& stage) {
-    database_.write([&](Sql& sql) {
-        sql.run("UPDATE stages SET state = ? WHERE key = ?",
-                {needed(sql, stage.key) ? "queued" : "cancelled", stage.key});
-        settle_bakes_of(sql, stage.key);
-    });
+    database_.write([&](Sql& sql) { release_stage(sql, stage.key); });
     finish_claim(stage);
 }
 

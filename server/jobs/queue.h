@@ -1,8 +1,9 @@
-// The queue: states of stages and bakes, as drawn in server/README.md.
+// The queue: states of stages and bakes. docs/architecture.md draws the transitions.
 #pragma once
 
 #include <atomic>
 #include <condition_variable>
+#include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -10,17 +11,29 @@
 #include <string>
 #include <vector>
 
+#include "server/jobs/bake_records.h"
+#include "server/jobs/job_state.h"
 #include "server/jobs/stage_plan.h"
-#include "server/store/blob_store.h"
-#include "server/store/database.h"
 
 namespace hairbake {
 
-/// A stage that a slot works on.
+class BlobStore;
+class Database;
+class Sql;
+
+/// A worker that runs without the daemon that started it.
+struct StartedTask {
+    std::string stage;   ///< key
+    std::string handle;  ///< of the runner
+    std::string folder;  ///< name of the work folder in the store's folder for incoming files
+};
+
+/// A stage that a thread of the worker pool works on.
 struct ClaimedStage {
     std::string key, kind, core_key, request;
     int attempt = 0;
-    std::shared_ptr<std::atomic<bool>> cancel;  ///< becomes true when nobody needs the stage any more
+    std::shared_ptr<std::atomic<bool>> cancel;  ///< becomes true when no live bake needs the stage any more
+    std::optional<StartedTask> started = {};    ///< the running worker to follow, instead of starting one
 };
 
 struct StageFile {
@@ -28,18 +41,14 @@ struct StageFile {
     std::uint64_t bytes = 0;
 };
 
-/// Why a stage or a bake failed.
-struct StageError {
-    std::string kind, message, field;  ///< kind as in server/worker/task.h
-};
-
 struct StageProgress {
     std::string phase;
-    double fraction = 0;  ///< of the whole stage
+    double fraction = 0;  ///< of the whole stage; never decreases while the stage runs
 };
 
 struct Submitted {
-    std::string id, state;
+    std::string id;
+    JobState state = JobState::queued;
     bool already_done = false;
 };
 
@@ -48,32 +57,42 @@ class Queue {
 public:
     Queue(Database& database, BlobStore& store, int max_crashes);
 
-    /// At boot: what ran is queued again, and so are stages whose files are not all stored; inputs that are not stored
-    /// are forgotten. Returns how many stages had lost a file.
-    std::size_t recover();
+    /// The running stages whose handles are of the runner of that name.
+    std::vector<StartedTask> started_tasks(const std::string& runner);
+
+    /// At boot. Stages of `surviving` workers stay running. Other running stages are queued again, and so are stages
+    /// whose files are not all stored. Inputs that are not stored are forgotten. Returns how many stages had lost a
+    /// file.
+    std::size_t recover(const std::vector<StartedTask>& surviving = {});
 
     /// Whether the bake is done and `names` (as in BakePlan) are noted with it; then its stages count as used just now.
     bool note_done(Sql& sql, const std::string& bake, const std::string& names);
 
-    /// Takes requests in one transaction; `batch`, when not empty, is made with them in it. Inputs were checked under
-    /// database.lock(), which the caller still holds.
+    /// Takes requests in one transaction; a `batch` that is not empty is made with them. The caller checked the inputs
+    /// under database.lock() and still holds it.
     std::vector<Submitted> submit(const std::vector<BakePlan>& plans, const std::string& batch = {},
                                   const std::string& batch_request = {});
 
-    /// The next stage by priority, then age; waits for one. Nothing after stop().
+    /// The next stage by priority, then age; blocks until there is one. Nothing after stop().
     std::optional<ClaimedStage> claim();
 
+    /// Stores the handle of a worker that survives a restart of the daemon.
+    void started(const StartedTask& task, const std::string& runner);
+
     void progress(const std::string& key, const std::string& phase, double fraction);
-    /// Fraction of running stages; nothing for others.
+    /// Nothing for a stage that does not run.
     std::optional<StageProgress> progress_of(const std::string& key);
 
     // How a claimed stage ended.
     void done(const ClaimedStage& stage, const std::vector<StageFile>& files, const std::string& manifest);
     void failed(const ClaimedStage& stage, const StageError& error);
-    void died(const ClaimedStage& stage, const std::string& how);  ///< queued again, or failed after too many deaths
-    void released(const ClaimedStage& stage);  ///< cancelled, or queued again when needed or stopping
+    /// Queues the stage again; fails it after too many deaths.
+    void died(const ClaimedStage& stage, const std::string& how);
+    /// Queues the stage again when a live bake needs it; else cancels it.
+    void released(const ClaimedStage& stage);
 
-    /// Throws Refusal(not_found); Refusal(conflict) when the bake has ended.
+    /// Throws Refusal(not_found).
+    /// Throws Refusal(conflict) when the bake has ended.
     void cancel(const std::string& bake);
 
     /// A blob is gone: stages that wrote it are queued again with their bakes, in the transaction that forgets it.
@@ -89,8 +108,11 @@ private:
     void settle_bake(Sql& sql, const std::string& bake);
     void settle_bakes_of(Sql& sql, const std::string& stage);
     void drop_unneeded(Sql& sql, const std::string& stage);
+    void release_stage(Sql& sql, const std::string& stage);
     void requeue_stage(Sql& sql, const std::string& stage);
     std::size_t requeue_incomplete(Sql& sql);
+    void resume(Sql& sql, const StartedTask& task);
+    std::optional<ClaimedStage> claim_queued();
     void finish_claim(const ClaimedStage& stage);
     void wake();
 
@@ -103,10 +125,11 @@ private:
     BlobStore& store_;
     const int max_crashes_;
     std::atomic<bool> stopping_{false};
-    std::mutex mutex_;  ///< of what follows; taken after the database's lock, never before
+    std::mutex mutex_;  ///< guards the members below; taken after the database's lock, never before
     std::condition_variable changed_;
     std::uint64_t changes_ = 0;
     std::map<std::string, Running> running_;
+    std::deque<ClaimedStage> resumed_;  ///< of surviving workers; to be claimed first
 };
 
 }  // namespace hairbake

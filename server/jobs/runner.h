@@ -1,39 +1,58 @@
-// How a task is run: as a local process today, by a farm's engine tomorrow.
+// The interface of everything that can run hairbake-worker: child processes here, a queue of a render farm elsewhere.
+//
+// A runner only starts, watches and stops. The worker reads its task from a work folder and writes its words and its
+// result there (work_folder.h), so a runner needs no channel to it. To add a runner, write NAME_runner.cpp with a
+// function that makes it, list the file in CMakeLists.txt, and add a line to the table in runner_kinds.cpp.
 #pragma once
 
-#include <atomic>
+#include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <string>
-#include <string_view>
 
 namespace hairbake {
 
-/// A task for hairbake-worker; its words are described in server/worker/task.h.
-struct Task {
-    std::string input;                                      ///< JSON for the worker's standard input
-    std::function<void(std::string_view, double)> progress  ///< phase and its fraction; from the calling thread
-        = [](std::string_view, double) {};
-    const std::atomic<bool>* cancel = nullptr;  ///< when it becomes true, the task is stopped
+/// The [workers] settings that a runner enforces.
+struct RunnerSettings {
+    std::filesystem::path program;            ///< hairbake-worker
+    std::uint64_t memory_bytes = 8ull << 30;  ///< limit of private memory of a worker; 0: no limit
+    std::uint64_t cpu_seconds = 4 * 3600;     ///< limit of CPU time, all threads of a worker together; 0: no limit
+    double wall_seconds = 2 * 3600;           ///< limit of the time from start to end
 };
 
-struct Outcome {
-    enum class End {
-        done,       ///< `facts` holds the worker's last word
-        failed,     ///< `kind`, `message`, `field` hold it; running it again would fail again
-        died,       ///< no last word: killed or crashed; `message` tells how
-        cancelled,  ///< because *cancel was set
+/// What a runner knows about a task. The worker's own words stand in the work folder.
+struct RunStatus {
+    enum class State {
+        running,
+        exited,     ///< the worker ended by itself: its last word counts
+        killed,     ///< the worker crashed, was killed, or was lost; another attempt may succeed
+        over_limit  ///< the worker reached a limit of RunnerSettings; another attempt would, too
     };
-    End end = End::died;
-    std::string facts = "{}";
-    std::string kind, message, field;
+    State state = State::running;
+    std::string message;  ///< how the worker ended, for people; empty while it runs
 };
 
+/// Thread-safe.
 class Runner {
 public:
     virtual ~Runner() = default;
-    /// Blocks until the task has ended. Thread-safe. Throws nothing but what the system runs out of.
-    virtual Outcome run(const Task& task) = 0;
+
+    /// Starts hairbake-worker on a work folder and returns a handle, a short text that names the run.
+    /// Throws Error when the worker cannot be started.
+    virtual std::string start(const std::filesystem::path& work_folder) = 0;
+
+    /// Never blocks for long. The handle of an ended worker is forgotten once its end was returned; an unknown handle
+    /// is `killed`. Limits and stop() may be enforced here, so callers poll until the end.
+    virtual RunStatus poll(const std::string& handle) = 0;
+
+    /// Asks the worker to stop and returns at once. A worker that does not stop is killed some seconds later.
+    virtual void stop(const std::string& handle) = 0;
+
+    /// Throws Error, saying why, when no task can be started at present.
+    virtual void check_ready() = 0;
+
+    /// Whether workers go on without the daemon, and handles stay valid for the next daemon. Then the daemon stores the
+    /// handle with its stage, leaves the worker alone when it stops, and follows it again when it starts.
+    virtual bool survives_restart() const = 0;
 };
 
 }  // namespace hairbake

@@ -3,14 +3,20 @@
 #include <fcntl.h>
 #include <spdlog/spdlog.h>
 #include <sys/file.h>
-#include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <chrono>
+#include <filesystem>
+#include <span>
 
 #include "core/base/error.h"
 #include "server/jobs/bake_request.h"
-#include "server/store/pruning.h"
+#include "server/jobs/maintenance.h"
+#include "server/jobs/queue.h"
+#include "server/jobs/runner_kinds.h"
+#include "server/jobs/worker_pool.h"
+#include "server/store/database.h"
+#include "server/store/eviction.h"
 
 namespace hairbake {
 namespace {
@@ -24,129 +30,184 @@ Descriptor lock_store(const std::filesystem::path& folder) {
     return lock;
 }
 
+RunnerSettings runner_settings(const Settings& settings) {
+    return {settings.worker, settings.memory_bytes, settings.cpu_seconds, settings.wall_seconds};
+}
+
 }  // namespace
 
+/// In the order in which they start; they end in the opposite order.
+struct Service::Parts {
+    Parts(const Settings& given, std::unique_ptr<Runner> with)
+        : settings(given),
+          lock(lock_store(settings.store)),
+          database(settings.store / "hairbake.db"),
+          store(settings.store, database),
+          runner(std::move(with)),
+          inspector(make_runner(local_runner_name, runner_settings(settings))),
+          queue(database, store, settings.max_crashes),
+          bakes(database, queue),
+          batches(database, queue),
+          catalog(database, store, *inspector),
+          names(database),
+          uploads(database, store, settings.store / "uploads",
+                  {settings.upload_lifetime_s, settings.blob_bytes, settings.budget_bytes, settings.open_uploads}) {}
+
+    /// The workers of an earlier daemon that still run, as far as their work folders are there.
+    std::vector<StartedTask> surviving_tasks() {
+        if (!runner->survives_restart()) return {};
+        std::vector<StartedTask> tasks = queue.started_tasks(settings.runner);
+        std::erase_if(tasks, [&](const StartedTask& task) {
+            return !std::filesystem::exists(store.incoming_folder() / task.folder);
+        });
+        return tasks;
+    }
+
+    void boot() {
+        const std::vector<StartedTask> surviving = surviving_tasks();
+        std::set<std::string> spared;
+        for (const StartedTask& task : surviving) spared.insert(task.folder);
+        if (const std::size_t lost = store.recover(spared)) spdlog::warn("{} blobs were lost", lost);
+        uploads.recover();
+        if (const std::size_t lost = queue.recover(surviving))
+            spdlog::warn("{} stages lost files; they are baked again", lost);
+        maintenance = std::make_unique<Maintenance>(database, store, uploads,
+                                                    MaintenanceSettings{settings.keep_failed_s, settings.budget_bytes});
+        pool = std::make_unique<WorkerPool>(
+            queue, *runner, database, store,
+            WorkerPoolSettings{settings.runner, settings.budget_bytes, settings.workers, settings.worker_threads});
+    }
+
+    const Settings settings;
+    Descriptor lock;
+    Database database;
+    BlobStore store;
+    std::unique_ptr<Runner> runner, inspector;  ///< of stages, of inspections
+    Queue queue;
+    Bakes bakes;
+    Batches batches;
+    Catalog catalog;
+    Names names;
+    Uploads uploads;
+    std::unique_ptr<Maintenance> maintenance;
+    std::unique_ptr<WorkerPool> pool;
+};
+
 Service::Service(const Settings& settings)
-    : settings_(settings),
-      lock_(lock_store(settings.store)),
-      database_(settings.store / "hairbake.db"),
-      store_(settings.store, database_),
-      runner_({settings.worker, settings.memory_bytes, settings.cpu_seconds, settings.wall_seconds}),
-      queue_(database_, store_, settings.max_crashes),
-      bakes_(database_, queue_),
-      batches_(database_, queue_),
-      catalog_(database_, store_, runner_),
-      uploads_(database_, store_, settings.store / "uploads",
-               {settings.upload_lifetime_s, settings.blob_bytes, settings.budget_bytes, settings.open_uploads}) {
-    if (const std::size_t lost = store_.recover()) spdlog::warn("{} blobs were lost", lost);
-    uploads_.recover();
-    if (const std::size_t lost = queue_.recover()) spdlog::warn("{} stages lost files; they are baked again", lost);
-    prune(database_, now() - settings_.keep_failed_s);
-    slots_ = std::make_unique<Slots>(queue_, runner_, database_, store_, settings_.budget_bytes, settings_.workers,
-                                     settings_.worker_threads);
-    caretaker_ = std::jthread([this] { look_after(); });
+    : Service(settings, make_runner(settings.runner, runner_settings(settings))) {}
+
+Service::Service(const Settings& settings, std::unique_ptr<Runner> runner)
+    : parts_(std::make_unique<Parts>(settings, std::move(runner))) {
+    parts_->boot();
 }
 
 Service::~Service() {
     stop();
-    slots_.reset();
-    caretaker_ = {};
+    parts_->pool.reset();
+    parts_->maintenance.reset();
     try {
-        store_.flush_uses();
+        parts_->store.flush_uses();
     } catch (const std::exception& error) {
         spdlog::error("at the end: {}", error.what());
     }
 }
 
 void Service::stop() {
-    queue_.stop();
-    stopped_.notify_all();
+    parts_->queue.stop();
+    parts_->maintenance->stop();
 }
 
-/// Once a minute: uses are written down, old uploads and ends go, the budget is kept.
-void Service::look_after() {
-    std::unique_lock lock(mutex_);
-    while (!stopped_.wait_for(lock, std::chrono::seconds(60), [this] { return queue_.stopping(); })) try {
-            store_.flush_uses();
-            uploads_.expire();
-            prune(database_, now() - settings_.keep_failed_s);
-            evict(database_, store_, settings_.budget_bytes);
-        } catch (const std::exception& error) {
-            spdlog::error("caretaker: {}", error.what());
-        }
-}
+const Settings& Service::settings() const { return parts_->settings; }
+Bakes& Service::bakes() { return parts_->bakes; }
+Batches& Service::batches() { return parts_->batches; }
+Catalog& Service::catalog() { return parts_->catalog; }
+Names& Service::names() { return parts_->names; }
+Uploads& Service::uploads() { return parts_->uploads; }
+
+std::optional<std::uint64_t> Service::blob_size(const std::string& digest) { return parts_->store.size_of(digest); }
 
 std::unique_ptr<IncomingFile> Service::receive(std::uint64_t expected_bytes, const std::string& digest) {
-    if (expected_bytes > settings_.blob_bytes)
+    if (expected_bytes > parts_->settings.blob_bytes)
         throw Refusal(Refused::too_large, "the body is " + std::to_string(expected_bytes) +
-                                              " bytes long; allowed is up to " + std::to_string(settings_.blob_bytes));
-    const bool known = is_digest(digest) && store_.size_of(digest);  // then nothing more will lie here
-    if (!known) make_room(database_, store_, settings_.budget_bytes, expected_bytes);
-    return std::make_unique<IncomingFile>(store_.incoming_folder(), settings_.blob_bytes);
+                                              " bytes long; allowed is up to " +
+                                              std::to_string(parts_->settings.blob_bytes));
+    const bool known = is_digest(digest) && parts_->store.size_of(digest);  // then the store does not grow
+    if (!known) make_room(parts_->database, parts_->store, parts_->settings.budget_bytes, expected_bytes);
+    return std::make_unique<IncomingFile>(parts_->store.incoming_folder(), parts_->settings.blob_bytes);
 }
 
-/// There is room for what was announced, and a body in chunks announces nothing; others came meanwhile, too.
+/// Makes room once more: a chunked body did not announce its size, and other files may have used the room.
 bool Service::store_blob(IncomingFile& file, const std::string& expected_digest) {
-    store_.check(file, expected_digest);
-    const auto held = database_.lock();
-    if (!store_.size_of(file.digest())) make_room(database_, store_, settings_.budget_bytes, file.bytes());
-    return store_.adopt(file.path(), file.digest());
+    parts_->store.check(file, expected_digest);
+    const auto held = parts_->database.lock();
+    if (!parts_->store.size_of(file.digest()))
+        make_room(parts_->database, parts_->store, parts_->settings.budget_bytes, file.bytes());
+    return parts_->store.adopt(file.path(), file.digest());
 }
 
 OpenBlob Service::open_blob(const std::string& digest) try {
-    return store_.open(digest, [&](Sql& sql) { queue_.blob_lost(sql, digest); });
+    return parts_->store.open(digest, [&](Sql& sql) { parts_->queue.blob_lost(sql, digest); });
 } catch (const LostBlob& lost) {
     spdlog::error("{}", lost.what());
     throw Refusal(Refused::busy, std::string(lost.what()) + "; a result is baked again, an input must be sent again");
 }
 
 Catalog::Added Service::add_input(const std::string& kind, const std::string& digest) {
-    if (store_.size_of(digest)) open_blob(digest);  // facts are kept for good: not those of spoiled bytes
-    return catalog_.add(kind, digest);
+    if (parts_->store.size_of(digest)) open_blob(digest);  // verifies it: facts of spoiled bytes must not be kept
+    return parts_->catalog.add(kind, digest);
 }
 
-/// A build farm that asks again: nothing is written, and nobody waits for who writes.
+/// The answer to a repeated request for a done bake. It writes nothing and does not wait for the writer.
 std::optional<Service::Answer> Service::answer_if_done(const std::string& body) {
     std::optional<Answer> answer;
-    database_.read([&](Sql& sql) {
+    parts_->database.read([&](Sql& sql) {
         const AskedBake asked = read_bake_request(sql, body);
         const std::string id = bake_id_of(asked.request);
-        if (queue_.note_done(sql, id, asked.names)) answer = {id, "done", bakes_.get(id).json};
+        if (parts_->queue.note_done(sql, id, asked.names))
+            answer = {id, JobState::done, parts_->bakes.get(id).json, asked.warnings};
     });
     return answer;
 }
 
 Service::Answer Service::submit(const std::string& body) {
     if (std::optional<Answer> known = answer_if_done(body)) return *known;
-    const auto held = database_.lock();  // what was found stored stays stored until it is queued
+    const auto held = parts_->database.lock();  // a blob that is stored now is still stored when the bake is queued
+    AskedBake asked;
     BakePlan plan;
-    database_.read([&](Sql& sql) { plan = plan_bake(sql, read_bake_request(sql, body)); });
-    const Submitted submitted = queue_.submit({plan}).at(0);
-    return {submitted.id, submitted.state, bakes_.get(submitted.id).json};
+    parts_->database.read([&](Sql& sql) {
+        asked = read_bake_request(sql, body);
+        plan = plan_bake(sql, asked);
+    });
+    const Submitted submitted = parts_->queue.submit({plan}).at(0);
+    return {submitted.id, submitted.state, parts_->bakes.get(submitted.id).json, asked.warnings};
 }
 
 std::string Service::not_ready() {
-    if (queue_.stopping()) return "the service is stopping";
+    if (parts_->queue.stopping()) return "the service is stopping";
     try {
-        IncomingFile probe(store_.incoming_folder(), 16);
+        IncomingFile probe(parts_->store.incoming_folder(), 16);
         probe.add(std::as_bytes(std::span("ready", 5)));
-        database_.read([](Sql& sql) { sql.rows("SELECT count(*) FROM names"); });
+        parts_->database.read([](Sql& sql) { sql.rows("SELECT count(*) FROM names"); });
+        parts_->runner->check_ready();
+        parts_->inspector->check_ready();
     } catch (const std::exception& error) {
         return error.what();
     }
-    if (::access(settings_.worker.c_str(), X_OK) != 0) return "the worker program cannot be started";
     return {};
 }
 
+void Service::cancel(const std::string& bake) { parts_->queue.cancel(bake); }
+
 Service::Counts Service::counts() {
     Counts counts;
-    for (const char* state : {"queued", "running", "done", "failed", "cancelled"})
-        counts.stages[state] = counts.bakes[state] = 0;
-    database_.read([&](Sql& sql) {
-        for (const SqlRow& row : sql.rows("SELECT state, count(*) FROM stages GROUP BY state"))
-            counts.stages[row.text(0)] = row.integer(1);
-        for (const SqlRow& row : sql.rows("SELECT state, count(*) FROM bakes GROUP BY state"))
-            counts.bakes[row.text(0)] = row.integer(1);
+    for (const auto& [state, name] : job_states) counts.stages[state] = counts.bakes[state] = 0;
+    const auto add = [](std::map<JobState, std::int64_t>& to, const std::vector<SqlRow>& rows) {
+        for (const SqlRow& row : rows)
+            if (const auto state = job_state(row.text(0))) to[*state] = row.integer(1);
+    };
+    parts_->database.read([&](Sql& sql) {
+        add(counts.stages, sql.rows("SELECT state, count(*) FROM stages GROUP BY state"));
+        add(counts.bakes, sql.rows("SELECT state, count(*) FROM bakes GROUP BY state"));
         const SqlRow blobs = sql.rows("SELECT count(*), sum(bytes) FROM blobs").at(0);
         counts.blobs = static_cast<std::uint64_t>(blobs.integer(0));
         counts.bytes = static_cast<std::uint64_t>(blobs.integer(1));

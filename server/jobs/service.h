@@ -1,25 +1,22 @@
-// The whole service behind the HTTP rim: store, queue and workers, in the order in which they start and stop.
+// The whole service behind the HTTP interface: store, queue and workers.
 #pragma once
 
-#include <atomic>
-#include <condition_variable>
+#include <cstdint>
+#include <map>
 #include <memory>
-#include <mutex>
+#include <optional>
 #include <string>
-#include <thread>
+#include <vector>
 
 #include "server/jobs/bakes.h"
 #include "server/jobs/batches.h"
 #include "server/jobs/catalog.h"
-#include "server/jobs/local_runner.h"
+#include "server/jobs/job_state.h"
 #include "server/jobs/names.h"
-#include "server/jobs/queue.h"
-#include "server/jobs/slots.h"
+#include "server/jobs/runner.h"
 #include "server/jobs/uploads.h"
 #include "server/settings.h"
 #include "server/store/blob_store.h"
-#include "server/store/database.h"
-#include "server/store/eviction.h"
 #include "server/store/refusal.h"
 
 namespace hairbake {
@@ -27,71 +24,74 @@ namespace hairbake {
 /// Only one process at a time holds a store. Thread-safe.
 class Service {
 public:
-    /// Boots: lock, database, store, queue; then the workers. Throws Error.
+    /// Boots: lock, database, store, queue, workers, with the runner of the settings.
+    /// Throws Error.
     explicit Service(const Settings& settings);
-    /// Ends the workers; what they did is queued again.
+    /// The same with another runner, whose name is settings.runner.
+    Service(const Settings& settings, std::unique_ptr<Runner> runner);
+    /// Stops the workers; their stages are queued again. Workers of a runner that survives a restart go on.
     ~Service();
 
     // ---- blobs
-    /// A file to receive a body into, of that digest where it is known. Makes room for it; throws Refusal(full) when
-    /// `expected_bytes` cannot be taken.
+    /// A file to receive a body into. Makes room for `expected_bytes`, unless the blob `digest` is stored.
+    /// Throws Refusal(full) when there is no room.
     std::unique_ptr<IncomingFile> receive(std::uint64_t expected_bytes, const std::string& digest = {});
-    /// Makes the received file a blob; returns whether it is new. Throws Refusal(unprocessable) when `expected_digest`
-    /// is not empty and another one, and Refusal(full) when there is no room for it.
-    bool store_blob(IncomingFile& file, const std::string& expected_digest);
-    /// Opens a blob, verified. A spoiled one starts its stages again and is Refusal(busy) for a result, not_found else.
-    OpenBlob open_blob(const std::string& digest);
 
-    /// Catalog::add() of verified bytes; throws as open_blob() too.
+    /// Makes the received file a blob; returns whether it is new.
+    /// Throws Refusal(unprocessable) when `expected_digest` is not empty and not the file's.
+    /// Throws Refusal(full) when there is no room.
+    bool store_blob(IncomingFile& file, const std::string& expected_digest);
+
+    /// Opens a blob, verified. A spoiled result is baked again.
+    /// Throws Refusal(not_found).
+    /// Throws Refusal(busy) for a spoiled blob.
+    OpenBlob open_blob(const std::string& digest);
+    std::optional<std::uint64_t> blob_size(const std::string& digest);
+
+    /// Catalog::add() of verified bytes. Throws as open_blob(), too.
     Catalog::Added add_input(const std::string& kind, const std::string& digest);
 
     // ---- bakes
-    /// {"id", "state"...} as Bakes::get, and whether it was done before.
     struct Answer {
-        std::string id, state, json;
+        std::string id;
+        JobState state = JobState::queued;
+        std::string json;                   ///< as Bakes::get()
+        std::vector<std::string> warnings;  ///< of deprecated fields in the request
     };
+    /// Takes a request for a bake.
+    /// Throws Refusal.
     Answer submit(const std::string& body);
 
+    /// Throws Refusal(not_found).
+    /// Throws Refusal(conflict) when the bake has ended.
+    void cancel(const std::string& bake);
+
     // ---- health
-    /// Empty when the store can be written and the database answers; else what is wrong.
+    /// Empty when the store and the database can be written and workers can be started; else the reason.
     std::string not_ready();
-    /// Counts for /metrics.
+
+    /// For /metrics.
     struct Counts {
-        std::map<std::string, std::int64_t> stages, bakes;  ///< by state
+        std::map<JobState, std::int64_t> stages, bakes;
         std::uint64_t blobs = 0, bytes = 0;
     };
     Counts counts();
 
-    const Settings& settings() const { return settings_; }
-    Database& database() { return database_; }
-    Queue& queue() { return queue_; }
-    Bakes& bakes() { return bakes_; }
-    Batches& batches() { return batches_; }
-    Catalog& catalog() { return catalog_; }
-    Uploads& uploads() { return uploads_; }
-    std::optional<std::uint64_t> blob_size(const std::string& digest) { return store_.size_of(digest); }
+    const Settings& settings() const;
+    Bakes& bakes();
+    Batches& batches();
+    Catalog& catalog();
+    Names& names();
+    Uploads& uploads();
 
-    /// Tells slots and requests to end; returns at once.
+    /// Tells the worker pool to end; returns at once.
     void stop();
 
 private:
+    struct Parts;
     std::optional<Answer> answer_if_done(const std::string& body);
-    void look_after();
 
-    const Settings settings_;
-    Descriptor lock_;
-    Database database_;
-    BlobStore store_;
-    LocalRunner runner_;
-    Queue queue_;
-    Bakes bakes_;
-    Batches batches_;
-    Catalog catalog_;
-    Uploads uploads_;
-    std::unique_ptr<Slots> slots_;
-    std::mutex mutex_;
-    std::condition_variable_any stopped_;
-    std::jthread caretaker_;
+    const std::unique_ptr<Parts> parts_;
 };
 
 }  // namespace hairbake

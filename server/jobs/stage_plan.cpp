@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/base/assert.h"
 #include "core/base/digest.h"
 #include "core/request/request_json.h"
 #include "core/request/stages.h"
@@ -9,60 +10,71 @@
 namespace hairbake {
 namespace {
 
-std::string digest_in(const std::optional<std::string>& file) {
-    return file ? file->substr(std::string("sha256:").size()) : std::string();
-}
-
+/// Digests of the request's files, by the fields that name them.
 InputDigests digests_of(const BakeRequest& request) {
     InputDigests digests;
-    const std::pair<const char*, const std::optional<std::string>*> fields[] = {{"hair", &request.hair},
-                                                                                {"environment", &request.environment},
-                                                                                {"occluder", &request.occluder},
-                                                                                {"receiver", &request.receiver}};
-    for (const auto& [field, file] : fields)
-        if (*file) digests[field] = digest_in(*file);
+    for (const FileField& field : file_fields())
+        if (const auto& file = request.*field.value) {
+            HAIRBAKE_ASSERT(file->starts_with("sha256:"));
+            digests[field.name] = file->substr(std::string_view("sha256:").size());
+        }
     return digests;
 }
 
-StagePlan plan_stage(const Stage& stage, const BakeRequest& request) {
-    const InputDigests digests = digests_of(request);
-    StagePlan plan{std::string(stage.name), {}, stage_key(stage, digests, request), {}, {}};
-    for (const std::string_view input : stage.inputs)
-        if (const auto found = digests.find(input); found != digests.end())
-            if (std::find(plan.inputs.begin(), plan.inputs.end(), found->second) == plan.inputs.end())
-                plan.inputs.push_back(found->second);
-    const BakeRequest alone = request_alone(stage, request);
+std::string digest_in(const InputDigests& digests, std::string_view field) {
+    const auto found = digests.find(field);
+    return found == digests.end() ? std::string() : found->second;
+}
+
+/// The id of the stage's result in the store: the core's key, and the formats in which the stage writes files.
+std::string store_key(const std::string& core_key, const BakeRequest& alone) {
     Digest digest;
-    digest.add("hairbake stage " + std::to_string(output_format) + "\n" + plan.core_key + "\n");
+    digest.add("hairbake stage " + std::to_string(output_format) + "\n" + core_key + "\n");
     for (const std::string& format : alone.outputs) digest.add(format + "\n");
-    plan.key = digest.hex();
+    return digest.hex();
+}
+
+StagePlan plan_stage(const Stage& stage, const InputDigests& digests, const BakeRequest& request) {
+    const BakeRequest alone = request_alone(stage, request);
+    StagePlan plan;
+    plan.kind = stage.name;
+    plan.core_key = stage_key(stage, digests, request);
+    plan.key = store_key(plan.core_key, alone);
     plan.request = to_json(alone, -1);
+    for (const std::string_view input : stage.inputs) {
+        const std::string digest = digest_in(digests, input);
+        if (!digest.empty() && !std::count(plan.inputs.begin(), plan.inputs.end(), digest))
+            plan.inputs.push_back(digest);
+    }
     return plan;
+}
+
+StageKeys keys_of(const InputDigests& digests, const BakeRequest& request) {
+    StageKeys keys;
+    for (const Stage* stage : stages_of(request)) keys[std::string(stage->name)] = stage_key(*stage, digests, request);
+    return keys;
 }
 
 }  // namespace
 
-std::vector<const StagePlan*> BakePlan::stages() const {
-    std::vector<const StagePlan*> list;
-    if (transmittance) list.push_back(&*transmittance);
-    if (irradiance) list.push_back(&*irradiance);
-    return list;
+std::span<const FileField> file_fields() {
+    static constexpr FileField fields[] = {{"hair", "model", &BakeRequest::hair},
+                                           {"environment", "environment", &BakeRequest::environment},
+                                           {"occluder", "mesh", &BakeRequest::occluder},
+                                           {"receiver", "mesh", &BakeRequest::receiver}};
+    return fields;
 }
 
-std::string bake_id_of(const BakeRequest& request) { return plan_bake(request).id; }
+std::string bake_id_of(const BakeRequest& request) { return bake_id(keys_of(digests_of(request), request), request); }
 
 BakePlan plan_bake(const BakeRequest& request) {
+    const InputDigests digests = digests_of(request);
     BakePlan plan;
+    plan.id = bake_id(keys_of(digests, request), request);
     plan.request = to_json(request, -1);
-    plan.hair = digest_in(request.hair);
-    plan.environment = digest_in(request.environment);
-    StageKeys keys;
-    for (const Stage* stage : stages_of(request)) {
-        StagePlan made = plan_stage(*stage, request);
-        keys[made.kind] = made.core_key;
-        (made.kind == "transmittance" ? plan.transmittance : plan.irradiance) = std::move(made);
-    }
-    plan.id = bake_id(keys, request);
+    plan.hair = digest_in(digests, "hair");
+    plan.environment = digest_in(digests, "environment");
+    for (const Stage* stage : stages_of(request)) plan.stages.push_back(plan_stage(*stage, digests, request));
     return plan;
 }
 

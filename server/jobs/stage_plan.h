@@ -1,7 +1,8 @@
-// A bake taken apart into its stages.
+// The plan of a bake: its stages and their keys.
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,10 +12,10 @@ namespace hairbake {
 
 /// One unit of work.
 struct StagePlan {
-    std::string kind;      ///< "transmittance" or "irradiance"
-    std::string key;       ///< digest of core_key and the formats that the stage writes: what the store knows it by
-    std::string core_key;  ///< transmittance_key() or irradiance_key(); a worker's manifest must name the same
-    std::string request;   ///< JSON of the request that runs this stage alone; files are "sha256:..."
+    std::string kind;                 ///< the stage's name in the stage table
+    std::string key;                  ///< digest of core_key and the formats that the stage writes; its id in the store
+    std::string core_key;             ///< the core's key of the stage; a worker's manifest must name the same
+    std::string request;              ///< JSON of the request that runs this stage alone; files are "sha256:..."
     std::vector<std::string> inputs;  ///< digests
 };
 
@@ -24,11 +25,18 @@ struct BakePlan {
     std::string names =
         "{}";  ///< JSON: {"environment": {"path": "stage1/sunset", "version": 3}} of what was asked by name
     std::string hair, environment;  ///< digests or empty
-    std::optional<StagePlan> transmittance, irradiance;
+    std::vector<StagePlan> stages;  ///< in the order of the stage table
     int priority = 0;
-
-    std::vector<const StagePlan*> stages() const;
 };
+
+/// A field of the request that names a file.
+struct FileField {
+    const char* name;
+    const char* kind;  ///< of the names that it may be asked by: "model", "environment", "mesh"
+    std::optional<std::string> BakeRequest::*value;
+};
+
+std::span<const FileField> file_fields();
 
 /// `request` is valid and its files are "sha256:<digest>".
 std::string bake_id_of(const BakeRequest& request);

@@ -7,6 +7,8 @@
 #include <cerrno>
 
 #include "core/base/digest.h"
+#include "server/store/blob_store.h"
+#include "server/store/database.h"
 #include "server/store/eviction.h"
 #include "server/store/file_system.h"
 #include "server/store/refusal.h"
@@ -61,8 +63,8 @@ void Uploads::recover() {
     complete_whole_ones();
 }
 
-/// What was received to its last byte, and a crash kept from becoming a blob: its sender may not ask again. What cannot
-/// become one now (the disk is full) stays as it is, and an empty PATCH tries again; the service starts without it.
+/// A crash can come between an upload's last byte and its blob, and the client may not ask again. An upload that cannot
+/// become a blob now (the disk is full) stays: an empty PATCH tries again. The service starts all the same.
 void Uploads::complete_whole_ones() {
     std::vector<std::string> whole;
     database_.read([&](Sql& sql) {
@@ -71,7 +73,7 @@ void Uploads::complete_whole_ones() {
     });
     for (const std::string& id : whole) try {
             complete(id);
-        } catch (const std::exception& error) {  // or its bytes are not those that were announced: then it is gone
+        } catch (const std::exception& error) {  // no room, or the digest is wrong: then the upload is gone
             spdlog::warn("the whole upload {} did not become a blob: {}", id, error.what());
         }
 }
@@ -84,12 +86,12 @@ void Uploads::expire() {
     });
     for (const std::string& id : old) try {
             remove(id);
-        } catch (const std::exception& error) {  // it grows just now, or the disk is full
+        } catch (const std::exception& error) {  // a request writes to it, or the disk is full
             spdlog::warn("the expired upload {} stays: {}", id, error.what());
         }
 }
 
-/// Who sends at once may get a few more than allowed: these are no exact limits.
+/// Not exact: requests at the same time may pass the limits by a few uploads.
 void Uploads::check(std::uint64_t bytes, const std::string& sha256, const std::string& token) {
     if (bytes > limits_.most_bytes)
         throw Refusal(Refused::too_large, "Upload-Length is " + std::to_string(bytes) + "; allowed is up to " +
@@ -112,7 +114,7 @@ void Uploads::check(std::uint64_t bytes, const std::string& sha256, const std::s
     if (open >= limits_.most_open)
         refuse(Refused::too_many, "there are " + std::to_string(open) + " unfinished uploads of this token",
                static_cast<std::uint64_t>(limits_.most_open), "");
-    const std::uint64_t share = limits_.budget / 2;  // so that nobody can keep all others out
+    const std::uint64_t share = limits_.budget / 2;  // so that one token cannot block all others
     if (open > 0 && own + bytes > share)
         refuse(Refused::too_many, "with this one, unfinished uploads of this token have " + std::to_string(own + bytes),
                share, " bytes, half of the store's budget");
@@ -192,8 +194,8 @@ Uploads::Appended Uploads::complete(const std::string& id) {
     return {size, 0, expected};
 }
 
-/// There was room when the upload began, and others came since. Its bytes were answered, so a store that has no room
-/// left does not drop them: the upload waits, whole, as long as one that does not grow, and an empty PATCH tries again.
+/// Other files may have used the room since the upload began. Its bytes were acknowledged, so they are not dropped: the
+/// whole upload waits with a new lifetime, and an empty PATCH tries again.
 void Uploads::make_blob(const std::string& id, const std::string& digest, std::uint64_t bytes) {
     const auto held = database_.lock();
     if (!store_.size_of(digest)) try {
@@ -202,7 +204,7 @@ void Uploads::make_blob(const std::string& id, const std::string& digest, std::u
             prolong(id);
             throw;
         }
-    // By a second name: a crash before the row is written leaves the upload as it was.
+    // By a second link: a crash before the row is written leaves the upload as it was.
     struct Link {
         fs::path path;
         ~Link() { ::unlink(path.c_str()); }  // there is none when the store took it

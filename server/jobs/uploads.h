@@ -1,4 +1,4 @@
-// Uploads that go on after a lost connection (tus 1.0: core, creation, termination, expiration).
+// Resumable uploads (tus 1.0: core, creation, termination, expiration).
 #pragma once
 
 #include <cstddef>
@@ -10,10 +10,10 @@
 #include <span>
 #include <string>
 
-#include "server/store/blob_store.h"
-#include "server/store/database.h"
-
 namespace hairbake {
+
+class BlobStore;
+class Database;
 
 struct UploadState {
     std::string id, metadata;
@@ -34,27 +34,31 @@ public:
     };
     Uploads(Database& database, BlobStore& store, std::filesystem::path folder, const Limits& limits);
 
-    /// At boot: files without a row go, and rows whose file has become a blob already.
+    /// At boot: removes files without a row and rows without a file; makes blobs of uploads that are whole.
     void recover();
-    /// Removes what has expired.
+    /// Removes expired uploads.
     void expire();
 
-    /// Throws Refusal when create() would: (too_many) when that token has too many unfinished uploads, or with others
-    /// of its own would announce more than half of the budget, (full) when all of them together would pass the budget.
+    /// Throws Refusal(too_many) when the token has too many unfinished uploads, or when they would announce more than
+    /// half of the budget.
+    /// Throws Refusal(full) when all unfinished uploads together would announce more than the budget.
     void check(std::uint64_t bytes, const std::string& sha256, const std::string& token);
-    /// `sha256` is what the whole file must have; `token` names who sends it. Throws Refusal as check() does.
+
+    /// `sha256` is the digest of the whole file; `token` names the sender. Throws as check().
     UploadState create(std::uint64_t bytes, const std::string& sha256, const std::string& metadata,
                        const std::string& token);
     UploadState get(const std::string& id);
-    /// Appends what `read` gives to its receiver, makes it durable, and makes the whole a blob when it is complete
-    /// (then the upload is gone and is_blob() is its digest). Throws Refusal(conflict) when `offset` is not the
-    /// upload's, or another request is at it, and Refusal(full) when there is no room for the whole; what came before
-    /// an interruption stays.
+
     struct Appended {
         std::uint64_t offset = 0;
         double expires = 0;
-        std::string blob;  ///< digest, once complete
+        std::string blob;  ///< digest, once complete; then the upload is gone
     };
+    /// Appends bytes durably. Makes the file a blob when it is complete. Bytes received before a failure stay.
+    ///
+    /// `offset` must be the upload's; `read` feeds the bytes to the receiver that it is given.
+    /// Throws Refusal(conflict) for another offset and while another request writes to the upload.
+    /// Throws Refusal(full) when there is no room for the blob.
     Appended append(const std::string& id, std::uint64_t offset, const std::function<void(const Receiver&)>& read);
     void remove(const std::string& id);
 

@@ -11,8 +11,10 @@
 #include <system_error>
 #include <unordered_map>
 
+#include "core/base/assert.h"
 #include "core/base/digest.h"
 #include "core/base/error.h"
+#include "server/store/database.h"
 #include "server/store/refusal.h"
 
 namespace hairbake {
@@ -40,11 +42,15 @@ BlobStore::BlobStore(const fs::path& folder, Database& database) : folder_(folde
     });
 }
 
-fs::path BlobStore::path_of(const std::string& digest) const { return folder_ / "blobs" / blob_name(digest); }
+fs::path BlobStore::path_of(const std::string& digest) const {
+    HAIRBAKE_ASSERT(is_digest(digest));
+    return folder_ / "blobs" / blob_name(digest);
+}
 
-std::size_t BlobStore::recover() {
+std::size_t BlobStore::recover(const std::set<std::string>& spared) {
     std::error_code ignored;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "tmp")) fs::remove_all(entry, ignored);
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "tmp"))
+        if (!spared.count(entry.path().filename().string())) fs::remove_all(entry, ignored);
 
     std::unordered_map<std::string, std::int64_t> rows;
     database_.read([&](Sql& sql) {
@@ -85,7 +91,7 @@ void BlobStore::check(IncomingFile& file, const std::string& expected) {
 bool BlobStore::adopt(const fs::path& file, const std::string& digest) {
     const auto held = database_.lock();
     const bool known = size_of(digest).has_value();
-    // Stored bytes that nobody has looked at since the start may be spoiled; these are not.
+    // Stored bytes that were not verified since the start may be spoiled; those of `file` are good.
     if (!known || !is_verified(digest)) {
         const auto bytes = static_cast<std::int64_t>(fs::file_size(file));
         if (::rename(file.c_str(), path_of(digest).c_str()) != 0) throw_store_error(file, errno);
@@ -114,7 +120,7 @@ OpenBlob BlobStore::open(const std::string& digest, const OnLoss& on_loss) {
     return blob;
 }
 
-/// Whatever keeps a file from being read now may pass; nothing is forgotten for it.
+/// The reason why the file cannot be read may pass, so nothing is forgotten.
 void BlobStore::refuse_for_now(const std::string& digest) {
     throw Refusal(Refused::busy, "the stored bytes of sha256:" + digest + " cannot be read now");
 }

@@ -1,4 +1,4 @@
-// Files named by the digest of their bytes.
+// The blob store: files named by the digest of their bytes.
 #pragma once
 
 #include <atomic>
@@ -14,20 +14,22 @@
 #include <unordered_set>
 #include <vector>
 
-#include "server/store/database.h"
 #include "server/store/file_system.h"
 #include "server/store/incoming_file.h"
 
 namespace hairbake {
 
+class Database;
+class Sql;
+
 /// Whether `text` is 64 lower-case hexadecimal digits.
 bool is_digest(const std::string& text);
 
-/// Where a blob lies in the folder blobs: "ab/<sha256>".
+/// Path of a blob in the folder blobs: "ab/<sha256>".
 std::string blob_name(const std::string& digest);
 
-/// A blob turned out to be missing or of other bytes than its name says. The store has forgotten it already, and in the
-/// same transaction was done what follows from that (BlobStore::OnLoss).
+/// A blob is missing, or its bytes do not have its digest. The store has already forgotten it and called OnLoss, both
+/// in one transaction.
 class LostBlob : public std::runtime_error {
 public:
     explicit LostBlob(const std::string& digest)
@@ -39,18 +41,19 @@ struct OpenBlob {
     std::uint64_t bytes = 0;
 };
 
-/// `folder`/blobs/ab/<sha256>, `folder`/tmp and the table `blobs`. Thread-safe. How a blob becomes durable stands in
-/// server/README.md.
+/// `folder`/blobs/ab/<sha256>, `folder`/tmp and the table `blobs`. Thread-safe. docs/architecture.md tells how a blob
+/// becomes durable.
 class BlobStore {
 public:
-    /// What follows from the loss of a blob, in the transaction that forgets it.
+    /// Called in the transaction that forgets a lost blob, to update the rows that refer to it.
     using OnLoss = std::function<void(Sql&)>;
 
     BlobStore(const std::filesystem::path& folder, Database& database);
 
-    /// At boot, before anything else: empties tmp/, removes files without a row, and forgets rows without a whole file.
-    /// Returns how many these were; what refers to them is Queue::recover()'s.
-    std::size_t recover();
+    /// At boot, before anything else: removes the entries of tmp/ but those in `spared`, removes blobs without a row,
+    /// and forgets rows without a whole file. Returns how many rows it forgot; Queue::recover() updates what refers to
+    /// them.
+    std::size_t recover(const std::set<std::string>& spared = {});
 
     std::filesystem::path incoming_folder() const { return folder_ / "tmp"; }
     std::filesystem::path path_of(const std::string& digest) const;
@@ -59,18 +62,21 @@ public:
     std::optional<std::uint64_t> size_of(const std::string& digest);
     std::uint64_t total_bytes() const { return total_bytes_; }
 
-    /// Finishes a received file. Throws Refusal(unprocessable) when `expected` is not empty and another digest.
+    /// Finishes a received file.
+    /// Throws Refusal(unprocessable) when `expected` is not empty and not the file's digest.
     static void check(IncomingFile& file, const std::string& expected);
 
-    /// Takes over a file that is on the disk already (fsync done) and whose digest was checked. Returns whether the
-    /// blob is new. It also takes the place of stored bytes that were not verified since the start.
+    /// Makes a file a blob by renaming it; returns whether the blob is new. The caller has synced the file and checked
+    /// its digest. A stored blob that was not verified since the start is replaced.
     bool adopt(const std::filesystem::path& file, const std::string& digest);
 
-    /// Opens a blob; checks its digest when it is the first time since the start. Throws Refusal(not_found), LostBlob,
-    /// and Refusal(busy) for a file that cannot be read now, which is not forgotten.
+    /// Opens a blob; verifies its digest the first time after the start.
+    /// Throws Refusal(not_found).
+    /// Throws Refusal(busy) for a file that cannot be read now; it is not forgotten.
+    /// Throws LostBlob.
     OpenBlob open(const std::string& digest, const OnLoss& on_loss);
 
-    /// Forgets a blob whose bytes are not those of its name.
+    /// Forgets a blob whose bytes do not have its digest.
     void lose(const std::string& digest, const OnLoss& on_loss);
 
     /// Removes rows and files, in one transaction.
@@ -89,10 +95,10 @@ private:
 
     std::filesystem::path folder_;
     Database& database_;
-    std::atomic<std::uint64_t> total_bytes_ = 0;  ///< what the table says, changed under database_.lock()
-    std::mutex mutex_;                            ///< of what follows
+    std::atomic<std::uint64_t> total_bytes_ = 0;  ///< of all rows; changed under database_.lock()
+    std::mutex mutex_;                            ///< guards the members below
     std::unordered_set<std::string> verified_;
-    std::unordered_map<std::string, double> used_;  ///< when
+    std::unordered_map<std::string, double> used_;  ///< by digest: when
 };
 
 /// Seconds since 1970.

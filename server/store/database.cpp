@@ -138,8 +138,8 @@ private:
 
 Database::Database(const std::filesystem::path& file) {
     const std::string advice =
-        "; put it aside (with its -wal and -shm) and restore a copy, or start with an empty store and send again what "
-        "is needed";
+        "; move it away (with its -wal and -shm) and restore a copy, or start with an empty store and send the inputs "
+        "again";
     try {
         writer_ = std::make_unique<Connection>(file, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
         writer_->prepare_file();
@@ -169,7 +169,7 @@ void Database::write(const std::function<void(Sql&)>& body) {
 
 void Database::read(const std::function<void(Sql&)>& body) {
     const std::unique_lock held(reading_);
-    if (in_read_) return body(*reader_);  // a part of the reading around it
+    if (in_read_) return body(*reader_);  // inside another read(): the same state
     struct Reading {
         bool& now;
         explicit Reading(bool& flag) : now(flag) { now = true; }

@@ -17,7 +17,7 @@ namespace hairbake {
 
 using SqlValue = std::variant<std::nullptr_t, std::int64_t, double, std::string>;
 
-/// One row of an answer; columns by their position in the SELECT.
+/// One row of a result; columns are numbered as in the SELECT.
 class SqlRow {
 public:
     explicit SqlRow(std::vector<SqlValue> values) : values_(std::move(values)) {}
@@ -31,43 +31,44 @@ private:
     std::vector<SqlValue> values_;
 };
 
-/// Runs statements inside a transaction of Database. Statements are prepared once and kept. A failure is
-/// Error(out_of_resources) for a full disk, Error(internal) otherwise.
+/// Runs statements inside a transaction of Database. Statements are prepared once and kept.
+/// Throws Error(out_of_resources) for a full or read-only disk, Error(internal) for other failures.
 class Sql {
 public:
     virtual ~Sql() = default;
-    /// How many rows were changed. `?` in `statement` stand for `values` in turn.
+    /// Returns how many rows were changed. Each `?` in `statement` stands for the next of `values`.
     virtual int run(std::string_view statement, const std::vector<SqlValue>& values = {}) = 0;
     virtual std::vector<SqlRow> rows(std::string_view statement, const std::vector<SqlValue>& values = {}) = 0;
 };
 
-/// WAL, synchronous FULL: a transaction that has returned is on the disk. Thread-safe; the locks are recursive, but
-/// transactions do not nest. Who reads does not wait for who writes, whose commits wait for the disk.
+/// WAL, synchronous FULL: a transaction that has returned is on the disk. Thread-safe. The locks are recursive, but
+/// transactions do not nest. Readers never wait for the writer; only the writer waits for fsync.
 class Database {
 public:
-    /// Opens or makes `file` and its tables. Throws Error(bad_input) with what to do when the file is no database of
-    /// this version or not whole.
+    /// Opens or makes `file` and its tables; brings a database of an earlier version to this one.
+    /// Throws Error(bad_input), telling what to do, when the file is no database, broken, or of a later version.
     explicit Database(const std::filesystem::path& file);
     ~Database();
 
     /// Runs `body` in one transaction: committed when it returns, rolled back when it throws.
     void write(const std::function<void(Sql&)>& body);
-    /// Runs `body` on one state of what is committed; it only reads. It may not write or take lock() inside.
+    /// Runs `body` on one committed state. `body` may not write and may not take lock().
     void read(const std::function<void(Sql&)>& body);
-    /// Grows with each write(), before it returns: what was read after asking holds while the number stays.
+    /// Grows with each write(), before it returns. A read() that began after this call is current while the number
+    /// stays.
     std::uint64_t version() const { return version_; }
-    /// To be asked inside read(): version() as it was when that began.
+    /// Inside read(): version() as it was when read() began.
     std::uint64_t version_read() const { return version_read_; }
-    /// Held by who must keep files and rows in step: nobody else writes meanwhile.
+    /// Excludes all other writers. Hold it to keep files and rows in step.
     std::unique_lock<std::recursive_mutex> lock() { return std::unique_lock(writing_); }
 
 private:
     class Connection;
-    std::recursive_mutex writing_, reading_;  ///< in this order
+    std::recursive_mutex writing_, reading_;  ///< taken in this order
     std::unique_ptr<Connection> writer_, reader_;
     std::atomic<std::uint64_t> version_ = 0;
-    bool in_read_ = false;            ///< under reading_
-    std::uint64_t version_read_ = 0;  ///< under reading_
+    bool in_read_ = false;            ///< guarded by reading_
+    std::uint64_t version_read_ = 0;  ///< guarded by reading_
 };
 
 }  // namespace hairbake

@@ -3,19 +3,21 @@
 #include <algorithm>
 #include <vector>
 
+#include "server/store/blob_store.h"
+#include "server/store/database.h"
 #include "server/store/refusal.h"
 
 namespace hairbake {
 namespace {
 
 constexpr const char* live_bake_of_stage =
-    "EXISTS(SELECT 1 FROM bakes b WHERE b.transmittance = s.key AND b.state IN ('queued', 'running')) OR "
-    "EXISTS(SELECT 1 FROM bakes b WHERE b.irradiance = s.key AND b.state IN ('queued', 'running'))";
+    "EXISTS(SELECT 1 FROM bake_stages m CROSS JOIN bakes b ON b.seq = m.bake WHERE m.stage = s.key AND "
+    "b.state IN ('queued', 'running'))";
 
-/// As many as one ranking of all that is stored gives to forget: the writer's lock is held meanwhile.
+/// Most blobs or stages that one ranking of all gives. The writer's lock is held while they are ranked.
 constexpr int ranked_at_once = 1000;
 
-/// The stored stages that were used longest ago and that no live bake needs, oldest first.
+/// The least recently used stored stages that no live bake needs, oldest first.
 std::vector<std::string> oldest_stages(Sql& sql) {
     std::vector<std::string> keys;
     for (const SqlRow& row :
@@ -27,7 +29,7 @@ std::vector<std::string> oldest_stages(Sql& sql) {
     return keys;
 }
 
-/// Forgets a stage and the bakes that it finished; returns its blobs that nothing else refers to.
+/// Forgets a stage and its bakes; returns its blobs that nothing else refers to.
 std::vector<std::string> forget_stage(Sql& sql, const std::string& key) {
     std::vector<std::string> blobs;
     for (const SqlRow& row :
@@ -38,19 +40,18 @@ std::vector<std::string> forget_stage(Sql& sql, const std::string& key) {
                   "AND sha256 NOT IN (SELECT sha256 FROM names)",
                   {key}))
         blobs.push_back(row.text(0));
-    sql.run("DELETE FROM batch_bakes WHERE bake IN (SELECT id FROM bakes WHERE transmittance = ? OR irradiance = ?)",
-            {key, key});
-    sql.run("DELETE FROM bake_names WHERE bake IN (SELECT id FROM bakes WHERE transmittance = ? OR irradiance = ?)",
-            {key, key});
-    sql.run("DELETE FROM bakes WHERE transmittance = ?", {key});
-    sql.run("DELETE FROM bakes WHERE irradiance = ?", {key});
+    const std::string ids = "(SELECT b.id FROM bake_stages m JOIN bakes b ON b.seq = m.bake WHERE m.stage = ?)";
+    sql.run("DELETE FROM batch_bakes WHERE bake IN " + ids, {key});
+    sql.run("DELETE FROM bake_names WHERE bake IN " + ids, {key});
+    sql.run("DELETE FROM bakes WHERE seq IN (SELECT bake FROM bake_stages WHERE stage = ?)", {key});
+    sql.run("DELETE FROM bake_stages WHERE bake IN (SELECT bake FROM bake_stages WHERE stage = ?)", {key});
     sql.run("DELETE FROM stage_files WHERE stage = ?", {key});
     sql.run("DELETE FROM stage_inputs WHERE stage = ?", {key});
     sql.run("DELETE FROM stages WHERE key = ?", {key});
     return blobs;
 }
 
-/// The inputs that were used longest ago and that nothing live refers to, oldest first.
+/// The least recently used inputs that no live bake and no name refers to, oldest first.
 std::vector<std::string> oldest_inputs(Sql& sql) {
     std::vector<std::string> digests;
     for (const SqlRow& row :
@@ -78,7 +79,7 @@ std::vector<std::string> forget_input(Sql& sql, const std::string& digest) {
     return blobs;
 }
 
-/// What one transaction forgets: blobs to remove, and how many bytes these are.
+/// The blobs that one transaction forgot: their files are to be removed.
 struct Forgotten {
     std::vector<std::string> blobs;
     std::uint64_t bytes = 0;
@@ -96,7 +97,7 @@ Forgotten forget_oldest(Sql& sql, BlobStore& store, const std::vector<std::strin
     return forgotten;
 }
 
-/// One transaction of it. Returns whether there was something to forget.
+/// Forgets in one transaction. Returns whether `rank` found anything.
 bool evict_some(Database& database, BlobStore& store, std::vector<std::string> (*rank)(Sql&),
                 std::vector<std::string> (*forget)(Sql&, const std::string&), std::uint64_t wanted) {
     bool some = false;
@@ -113,7 +114,7 @@ bool evict_some(Database& database, BlobStore& store, std::vector<std::string> (
 }  // namespace
 
 bool evict(Database& database, BlobStore& store, std::uint64_t budget, std::uint64_t incoming) {
-    if (incoming > budget) return false;  // whatever went for it would be gone in vain
+    if (incoming > budget) return false;  // it cannot fit: evict nothing
     const auto held = database.lock();    // rows and files go together
     const std::uint64_t allowed = budget - incoming, spare = budget / 100 * 3;
     const std::uint64_t wanted = allowed - std::min(allowed, spare);

@@ -4,19 +4,21 @@
 #include <cstdint>
 #include <string>
 
-#include "server/store/blob_store.h"
-#include "server/store/database.h"
-
 namespace hairbake {
 
-/// When the blobs and `incoming` bytes more pass `budget`, removes what was used longest ago: results first (their
-/// stages and finished bakes are forgotten) until 3 % of the budget is free or one ranking's have gone, so that the
-/// next blobs need no ranking of all that is stored; then inputs, until the budget is kept. Never what a live bake
-/// reads or wrote or a name's newest version points at. Returns whether the budget is kept.
+class BlobStore;
+class Database;
+
+/// Removes the least recently used blobs when the store's bytes and `incoming` more pass `budget`. Returns whether they
+/// fit now.
+///
+/// Results go first, with their stages and the bakes that they finished, until 3 % of the budget are free or a thousand
+/// stages are gone; the next blobs then need no ranking of all stages. Inputs go next, until the budget is kept. A blob
+/// that a live bake reads or wrote is never removed, nor is one that a name's newest version refers to.
 bool evict(Database& database, BlobStore& store, std::uint64_t budget, std::uint64_t incoming = 0);
 
-/// evict() for who brings a blob of `incoming` bytes; throws Refusal(full) when it cannot be taken. The room is there
-/// as long as the caller holds database.lock().
+/// evict() before a blob of `incoming` bytes. The room is there as long as the caller holds database.lock().
+/// Throws Refusal(full) when the blob does not fit.
 void make_room(Database& database, BlobStore& store, std::uint64_t budget, std::uint64_t incoming);
 
 }  // namespace hairbake

@@ -20,8 +20,8 @@ void throw_store_error(const std::filesystem::path& file, int error) {
     const bool busy = error == ENOMEM || error == EMFILE || error == ENFILE;
     const bool closed = error == EROFS || error == EACCES || error == EPERM || error == EIO;
     const std::string words = std::generic_category().message(error);
-    if (busy) throw Refusal(Refused::busy, "the store cannot take more now: " + words);
-    if (full) throw Error(ErrorKind::out_of_resources, "the store cannot take more: " + words);
+    if (busy) throw Refusal(Refused::busy, "the store is short of memory or descriptors: " + words);
+    if (full) throw Error(ErrorKind::out_of_resources, "the store cannot grow: " + words);
     if (closed) throw Error(ErrorKind::out_of_resources, "the store cannot be written: " + words);
     throw Error(ErrorKind::internal, "the store's " + file.string() + ": " + words);
 }

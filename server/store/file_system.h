@@ -1,4 +1,4 @@
-// Calls of the file system that matter for what survives a crash.
+// Calls of the file system that make data durable or fail with the reason.
 #pragma once
 
 #include <cstddef>
@@ -9,10 +9,13 @@
 
 namespace hairbake {
 
-/// Error(out_of_resources) for a full disk or quota, Error(internal) otherwise, with the system's words.
+/// `error` is errno. The message holds the system's text.
+/// Throws Refusal(busy) when memory or descriptors are short.
+/// Throws Error(out_of_resources) for a disk that is full or cannot be written, Error(internal) otherwise.
 [[noreturn]] void throw_store_error(const std::filesystem::path& file, int error);
 
-/// All bytes, or throws.
+/// Writes all bytes.
+/// Throws as throw_store_error().
 void write_all(int descriptor, std::span<const std::byte> bytes, const std::filesystem::path& file);
 
 void sync_file(int descriptor, const std::filesystem::path& file);

@@ -5,6 +5,7 @@
 
 #include <cerrno>
 
+#include "core/base/assert.h"
 #include "server/store/file_system.h"
 #include "server/store/refusal.h"
 
@@ -19,10 +20,11 @@ IncomingFile::IncomingFile(const std::filesystem::path& folder, std::uint64_t li
 
 IncomingFile::~IncomingFile() {
     if (descriptor_ >= 0) ::close(descriptor_);
-    ::unlink(path_.c_str());  // there is none when a store renamed it
+    ::unlink(path_.c_str());  // fails when a store has renamed it
 }
 
 void IncomingFile::add(std::span<const std::byte> bytes) {
+    HAIRBAKE_ASSERT(descriptor_ >= 0);  // before finish()
     if (bytes.size() > limit_ - bytes_)
         throw Refusal(Refused::too_large, "the body is longer than " + std::to_string(limit_) + " bytes");
     write_all(descriptor_, bytes, path_);

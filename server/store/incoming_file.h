@@ -1,4 +1,4 @@
-// A file that is being received: bytes go to tmp/ and into a digest at once.
+// A file that is being received: its digest is computed while the bytes are written.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace hairbake {
 
-/// Not thread-safe. The file goes away with its owner unless a store has taken it over.
+/// Not thread-safe. The destructor removes the file unless a store has adopted it.
 class IncomingFile {
 public:
     /// A new file of a random name in `folder`; at most `limit` bytes may be added.
@@ -20,10 +20,11 @@ public:
     IncomingFile(const IncomingFile&) = delete;
     IncomingFile& operator=(const IncomingFile&) = delete;
 
-    /// Throws Refusal(too_large) past the limit and Error(out_of_resources) for a full disk; nothing is kept in memory.
+    /// Throws Refusal(too_large) beyond the limit.
+    /// Throws Error(out_of_resources) for a full disk.
     void add(std::span<const std::byte> bytes);
 
-    /// fsync; then digest(), and nothing may be added any more.
+    /// Syncs and closes the file; digest() is valid from now on, and nothing may be added any more.
     void finish();
 
     const std::filesystem::path& path() const { return path_; }

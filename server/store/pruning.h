@@ -1,13 +1,13 @@
-// Forgets what nobody will ask for any more.
+// Forgets old records of work that ended without a result.
 #pragma once
-
-#include "server/store/database.h"
 
 namespace hairbake {
 
-/// Failed and cancelled bakes that ended before `time` (seconds since 1970), stages of those states that no bake refers
-/// to, and batches made before it whose bakes have all ended. Done bakes go with their results (eviction.h); versions
-/// of names stay.
+class Database;
+
+/// Removes failed and cancelled bakes that ended before `time` (seconds since 1970), failed and cancelled stages that
+/// no bake has, and batches made before `time` whose bakes have all ended. Done bakes stay until their results are
+/// evicted (eviction.h); versions of names stay.
 void prune(Database& database, double time);
 
 }  // namespace hairbake

@@ -1,4 +1,4 @@
-// A request that the service understands and refuses.
+// The exception for a request that the service refuses.
 #pragma once
 
 #include <stdexcept>
@@ -8,17 +8,17 @@
 namespace hairbake {
 
 enum class Refused {
-    malformed,      ///< not what the route takes
+    malformed,      ///< not of the form that the route takes
     unprocessable,  ///< well-formed, and a field's value is not allowed
     not_found,
-    conflict,   ///< with what the service holds now
+    conflict,   ///< with the present state of the service
     too_large,  ///< more bytes than allowed
-    too_many,   ///< of something that one token may have; fewer, or later
-    full,       ///< the store's budget or its disk
+    too_many,   ///< one token has too many of something
+    full,       ///< the store's budget is used up
     busy        ///< try again later
 };
 
-/// `field` is the field at fault or empty; the message says what was found and what is allowed.
+/// `field` is the field at fault or empty. The message tells what was found and what is allowed.
 class Refusal : public std::runtime_error {
 public:
     Refusal(Refused why, const std::string& message, std::string field = {})
@@ -26,7 +26,7 @@ public:
 
     Refused why() const { return why_; }
     const std::string& field() const { return field_; }
-    /// JSON pointer to the field in the request's body; empty when it is not there.
+    /// JSON pointer to the field in the request's body, or empty.
     const std::string& pointer() const { return pointer_; }
     Refusal& at(std::string pointer) {
         pointer_ = std::move(pointer);

@@ -1,34 +1,13 @@
 #include "server/store/schema.h"
 
+#include <array>
+
 namespace hairbake {
+namespace {
 
 // Times are seconds since 1970. Digests and keys are 64 hexadecimal digits. Requests, facts, errors and manifests are
 // JSON.
-const char* schema_statements(int from) {
-    if (from == 1) return "ALTER TABLE uploads ADD COLUMN token TEXT NOT NULL DEFAULT ''";
-    if (from == 2)
-        return R"sql(
-CREATE TABLE bake_names(bake TEXT NOT NULL, field TEXT NOT NULL, path TEXT NOT NULL, version INTEGER NOT NULL,
-    PRIMARY KEY(bake, field, path)) WITHOUT ROWID;
-CREATE INDEX bake_names_by_path ON bake_names(path);
-INSERT INTO bake_names SELECT b.id, n.key, json_extract(n.value, '$.path'), json_extract(n.value, '$.version')
-    FROM bakes b, json_each(b.names) n;
-)sql";
-    if (from == 3)  // a page of a name's or a batch's bakes is read by their age, and no other bakes with it
-        return R"sql(
-DELETE FROM bake_names WHERE bake NOT IN (SELECT id FROM bakes);
-ALTER TABLE bake_names ADD COLUMN seq INTEGER NOT NULL DEFAULT 0;
-UPDATE bake_names SET seq = (SELECT b.seq FROM bakes b WHERE b.id = bake);
-DROP INDEX bake_names_by_path;
-CREATE INDEX bake_names_by_path ON bake_names(path, seq);
-DELETE FROM batch_bakes WHERE bake NOT IN (SELECT id FROM bakes);
-ALTER TABLE batch_bakes ADD COLUMN seq INTEGER NOT NULL DEFAULT 0;
-UPDATE batch_bakes SET seq = (SELECT b.seq FROM bakes b WHERE b.id = bake);
-CREATE INDEX batch_bakes_by_age ON batch_bakes(batch, seq);
-CREATE INDEX inputs_by_blob ON inputs(sha256);
-CREATE INDEX inputs_by_thumbnail ON inputs(thumbnail);
-)sql";
-    return R"sql(
+constexpr const char* version_1 = R"sql(
 CREATE TABLE blobs(sha256 TEXT PRIMARY KEY, bytes INTEGER NOT NULL, created REAL NOT NULL, used REAL NOT NULL)
     WITHOUT ROWID;
 CREATE TABLE inputs(seq INTEGER PRIMARY KEY, kind TEXT NOT NULL, sha256 TEXT NOT NULL, facts TEXT NOT NULL,
@@ -62,6 +41,55 @@ CREATE INDEX batch_bakes_by_bake ON batch_bakes(bake);
 CREATE TABLE uploads(id TEXT PRIMARY KEY, bytes INTEGER NOT NULL, sha256 TEXT NOT NULL, metadata TEXT NOT NULL,
     created REAL NOT NULL, expires REAL NOT NULL) WITHOUT ROWID;
 )sql";
-}
+
+constexpr const char* version_2 = "ALTER TABLE uploads ADD COLUMN token TEXT NOT NULL DEFAULT ''";
+
+constexpr const char* version_3 = R"sql(
+CREATE TABLE bake_names(bake TEXT NOT NULL, field TEXT NOT NULL, path TEXT NOT NULL, version INTEGER NOT NULL,
+    PRIMARY KEY(bake, field, path)) WITHOUT ROWID;
+CREATE INDEX bake_names_by_path ON bake_names(path);
+INSERT INTO bake_names SELECT b.id, n.key, json_extract(n.value, '$.path'), json_extract(n.value, '$.version')
+    FROM bakes b, json_each(b.names) n;
+)sql";
+
+// The age of a bake, so that one page of a name's or a batch's bakes is read without all others.
+constexpr const char* version_4 = R"sql(
+DELETE FROM bake_names WHERE bake NOT IN (SELECT id FROM bakes);
+ALTER TABLE bake_names ADD COLUMN seq INTEGER NOT NULL DEFAULT 0;
+UPDATE bake_names SET seq = (SELECT b.seq FROM bakes b WHERE b.id = bake);
+DROP INDEX bake_names_by_path;
+CREATE INDEX bake_names_by_path ON bake_names(path, seq);
+DELETE FROM batch_bakes WHERE bake NOT IN (SELECT id FROM bakes);
+ALTER TABLE batch_bakes ADD COLUMN seq INTEGER NOT NULL DEFAULT 0;
+UPDATE batch_bakes SET seq = (SELECT b.seq FROM bakes b WHERE b.id = bake);
+CREATE INDEX batch_bakes_by_age ON batch_bakes(batch, seq);
+CREATE INDEX inputs_by_blob ON inputs(sha256);
+CREATE INDEX inputs_by_thumbnail ON inputs(thumbnail);
+)sql";
+
+// Any number of stages a bake (version 4 had a column for each of two); bake_stages.bake is bakes.seq. The run of a
+// stage on a runner that survives a restart.
+constexpr const char* version_5 = R"sql(
+CREATE TABLE bake_stages(seq INTEGER PRIMARY KEY, bake INTEGER NOT NULL, kind TEXT NOT NULL, stage TEXT NOT NULL,
+    UNIQUE(bake, kind));
+INSERT INTO bake_stages(bake, kind, stage)
+    SELECT seq, 'transmittance', transmittance FROM bakes WHERE transmittance IS NOT NULL ORDER BY seq;
+INSERT INTO bake_stages(bake, kind, stage)
+    SELECT seq, 'irradiance', irradiance FROM bakes WHERE irradiance IS NOT NULL ORDER BY seq;
+CREATE INDEX bake_stages_by_stage ON bake_stages(stage, bake);
+DROP INDEX bakes_by_transmittance;
+DROP INDEX bakes_by_irradiance;
+ALTER TABLE bakes DROP COLUMN transmittance;
+ALTER TABLE bakes DROP COLUMN irradiance;
+ALTER TABLE stages ADD COLUMN runner TEXT;
+ALTER TABLE stages ADD COLUMN handle TEXT;
+ALTER TABLE stages ADD COLUMN work_folder TEXT;
+)sql";
+
+constexpr std::array<const char*, schema_version> changes{version_1, version_2, version_3, version_4, version_5};
+
+}  // namespace
+
+const char* schema_statements(int from) { return changes.at(static_cast<std::size_t>(from)); }
 
 }  // namespace hairbake

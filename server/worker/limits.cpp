@@ -15,7 +15,8 @@
 namespace hairbake {
 namespace {
 
-/// `grace` above the limit lies the hard one: for CPU time the first signal is SIGXCPU, which tells why, then SIGKILL.
+/// The hard limit is `grace` above the soft one. For CPU time the soft limit sends SIGXCPU, by which the daemon knows
+/// the reason, and the hard limit sends SIGKILL.
 void set_limit(__rlimit_resource resource, std::uint64_t value, std::uint64_t grace = 0) {
     if (value == 0) return;
     const rlimit limit{value, value + grace};
@@ -25,8 +26,7 @@ void set_limit(__rlimit_resource resource, std::uint64_t value, std::uint64_t gr
 void say_out_of_memory() {
     static constexpr char words[] =
         "\n{\"error\":{\"kind\":\"out_of_resources\",\"message\":\"the worker's memory limit was reached; fewer "
-        "voxels, "
-        "vertices or smaller maps need less\",\"field\":\"\"}}\n";
+        "voxels, vertices or smaller maps need less\",\"field\":\"\"}}\n";
     [[maybe_unused]] const ssize_t written = ::write(STDOUT_FILENO, words, sizeof words - 1);
     _exit(4);
 }
@@ -35,7 +35,7 @@ void say_out_of_memory() {
 
 void report_memory_exhaustion() {
     std::set_new_handler(say_out_of_memory);
-    // Threads of libraries let bad_alloc go to the end of the world.
+    // Threads of libraries do not catch bad_alloc.
     std::set_terminate([] {
         try {
             if (std::current_exception()) std::rethrow_exception(std::current_exception());

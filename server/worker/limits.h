@@ -1,4 +1,4 @@
-// What a worker may take, set by itself before it reads a byte.
+// Resource limits of a worker. It sets them itself before it reads its task.
 #pragma once
 
 #include <sys/types.h>
@@ -8,15 +8,17 @@
 namespace hairbake {
 
 struct Limits {
-    std::uint64_t memory_bytes = 0;  ///< of private memory (RLIMIT_DATA); 0: none
-    std::uint64_t cpu_seconds = 0;   ///< of all threads (RLIMIT_CPU); 0: none
-    pid_t parent = 0;                ///< the daemon: when it ends, the kernel ends this process; 0: nobody
+    std::uint64_t memory_bytes = 0;  ///< private memory (RLIMIT_DATA); 0: no limit
+    std::uint64_t cpu_seconds = 0;   ///< CPU time of all threads (RLIMIT_CPU); 0: no limit
+    pid_t parent = 0;                ///< the kernel kills this process when that one ends; 0: no such process
 };
 
-/// Throws Error(internal) when a limit cannot be set, or the parent is gone already.
+/// Throws Error(internal) when a limit cannot be set.
+/// Throws Error(cancelled) when the parent is gone already.
 void apply(const Limits& limits);
 
-/// From now on the end of memory, in whatever thread, is a last word on standard output (task.h) instead of an abort.
+/// From now on a worker that runs out of memory, in any thread, writes a last word (task.h) to standard output and ends
+/// with code 4 instead of aborting.
 void report_memory_exhaustion();
 
 }  // namespace hairbake

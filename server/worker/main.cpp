@@ -1,10 +1,13 @@
 // hairbake-worker: runs one task of the service in a process of its own. See task.h for what it reads and writes.
+#include <fcntl.h>
 #include <signal.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <chrono>
-#include <iostream>
+#include <filesystem>
+#include <fstream>
 #include <iterator>
 #include <mutex>
 #include <new>
@@ -13,6 +16,7 @@
 #include <system_error>
 #include <thread>
 
+#include "core/base/error_kind_names.h"
 #include "server/worker/limits.h"
 #include "server/worker/task.h"
 
@@ -21,17 +25,40 @@ namespace {
 using hairbake::Error;
 using hairbake::ErrorKind;
 using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
 
-void say(const Json& line) { std::cout << line.dump(-1, ' ', false, Json::error_handler_t::replace) << std::endl; }
+/// A full disk does not end the task; the daemon reserved space for the last word.
+void say(const Json& words) {
+    const std::string line = words.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    for (std::size_t written = 0; written < line.size();) {
+        const ssize_t count = ::write(STDOUT_FILENO, line.data() + written, line.size() - written);
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) return;
+        written += static_cast<std::size_t>(count);
+    }
+}
 
-/// Progress as lines, at most twenty a second.
+/// Everything that is written to standard output from now on is appended to `words`.
+void redirect_output(const fs::path& words) {
+    const int descriptor = ::open(words.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0640);
+    if (descriptor < 0 || ::dup2(descriptor, STDOUT_FILENO) < 0)
+        throw Error(ErrorKind::internal, words.string() + " cannot be written");
+    ::close(descriptor);
+}
+
+std::string read_file(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Progress as lines, at most twenty a second and a few hundred a phase: words.jsonl stays small.
 class LineProgress : public hairbake::BakeProgress {
 public:
     void enter(std::string_view phase) override {
         {
             const std::lock_guard lock(mutex_);
             phase_ = phase;
-            said_ = {};
+            is_new_phase_ = true;
         }
         report(0);
     }
@@ -39,18 +66,23 @@ public:
     void report(double fraction) override {
         const std::lock_guard lock(mutex_);
         const auto time = std::chrono::steady_clock::now();
-        if (fraction < 1 && time - said_ < std::chrono::milliseconds(50)) return;
-        said_ = time;
+        const bool is_news = time - said_at_ >= std::chrono::milliseconds(50) && fraction >= said_ + 0.002;
+        if (!is_new_phase_ && fraction < 1 && !is_news) return;
+        is_new_phase_ = false;
+        said_ = fraction;
+        said_at_ = time;
         say({{"phase", phase_}, {"fraction", fraction}});
     }
 
 private:
     std::mutex mutex_;
     std::string phase_;
-    std::chrono::steady_clock::time_point said_;
+    bool is_new_phase_ = true;
+    double said_ = 0;  ///< the fraction
+    std::chrono::steady_clock::time_point said_at_;
 };
 
-/// SIGTERM asks the task to stop; the daemon sends SIGKILL to what does not listen.
+/// SIGTERM cancels the task; the daemon sends SIGKILL to a worker that does not stop.
 std::jthread watch_for_stop(hairbake::Progress& progress) {
     sigset_t set;
     sigemptyset(&set);
@@ -66,62 +98,48 @@ std::jthread watch_for_stop(hairbake::Progress& progress) {
     });
 }
 
-const char* name_of(ErrorKind kind) {
-    switch (kind) {
-        case ErrorKind::usage:
-            return "usage";
-        case ErrorKind::bad_input:
-            return "bad_input";
-        case ErrorKind::out_of_resources:
-            return "out_of_resources";
-        case ErrorKind::cancelled:
-            return "cancelled";
-        default:
-            return "internal";
-    }
-}
-
-int fail(const Error& error, const std::string& task) {
+int fail(const Error& error, const std::string& task, const fs::path& folder) {
     say({{"error",
-          {{"kind", name_of(error.kind())},
-           {"message", hairbake::with_names(error.what(), task)},
+          {{"kind", hairbake::name_of(error.kind())},
+           {"message", hairbake::with_names(error.what(), task, folder)},
            {"field", error.field()}}}});
     return 1;
 }
 
-int work(hairbake::BakeProgress& progress) {
-    const std::string task{std::istreambuf_iterator<char>(std::cin), {}};
+int work(const fs::path& folder, hairbake::BakeProgress& progress) {
+    const std::string task = read_file(folder / "task.json");
     try {
-        const std::string done = hairbake::run_task(task, progress);
+        const std::string done = hairbake::run_task(task, folder, progress);
         say({{"done", Json::parse(done)}});
         return 0;
     } catch (const Error& error) {
-        return fail(error, task);
+        return fail(error, task, folder);
     } catch (const std::bad_alloc&) {
-        return fail(Error(ErrorKind::out_of_resources, "the worker's memory limit was reached"), task);
+        return fail(Error(ErrorKind::out_of_resources, "the worker's memory limit was reached"), task, folder);
     } catch (const std::exception& error) {
-        return fail(Error(ErrorKind::internal, error.what()), task);
+        return fail(Error(ErrorKind::internal, error.what()), task, folder);
     }
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app{"Runs one task of hairbaked: JSON on standard input, JSON lines on standard output."};
+    CLI::App app{"Runs one task of hairbaked: reads FOLDER/task.json, writes FOLDER/words.jsonl and the result."};
     hairbake::Limits limits;
-    app.add_option("--memory", limits.memory_bytes, "limit of private memory in bytes; 0: none");
-    app.add_option("--cpu", limits.cpu_seconds, "limit of CPU time in seconds; 0: none");
-    app.add_option("--parent", limits.parent, "process whose end ends this one");
+    fs::path folder;
+    app.add_option("--memory", limits.memory_bytes, "limit of private memory in bytes; 0: no limit");
+    app.add_option("--cpu", limits.cpu_seconds, "limit of CPU time in seconds; 0: no limit");
+    app.add_option("--parent", limits.parent, "the kernel kills the worker when this process ends; 0: no process");
+    app.add_option("FOLDER", folder, "work folder")->required();
     CLI11_PARSE(app, argc, argv);
     LineProgress progress;
     try {
+        redirect_output(folder / "words.jsonl");
         hairbake::report_memory_exhaustion();
         apply(limits);
         const std::jthread watch = watch_for_stop(progress);
-        const int code = work(progress);
-        std::cout.flush();
-        _exit(code);  // without destructors of libraries: everything is written
+        _exit(work(folder, progress));  // without the destructors of libraries: everything is written
     } catch (const Error& error) {
-        return fail(error, "");
+        return fail(error, "", folder);
     }
 }

@@ -1,27 +1,30 @@
-// What the daemon asks a worker to do, and what the worker says.
+// What the daemon asks a worker to do, and what the worker says. Both are files of the work folder.
 //
-// Standard input: one JSON object.
-//   {"task": "bake", "request": {..., paths of files}, "folder": "...", "threads": 2, "names": {path: "sha256:..."}}
-//       runs the request's one stage and writes `folder`/result: its files and manifest.json
-//   {"task": "inspect", "kind": "model" | "environment", "file": path, "folder": "...", "threads": 1, "names": {...}}
-//       reads the file; writes `folder`/thumbnail.png
-// Standard output: JSON lines.
-//   {"phase": "transmittance", "fraction": 0.25}      any number of these
-//   {"done": {...}}                                   the last word: facts of inspect, {} of bake
+// task.json: one JSON object.
+//   {"task": "bake", "stages": ["transmittance"], "request": {..., paths of files}, "threads": 2, "names": {path:
+//   "sha256:..."}}
+//       runs these stages of the request; writes the folder result: the stages' files and manifest.json
+//   {"task": "inspect", "kind": "model" | "environment", "file": path, "threads": 1, "names": {...}}
+//       reads the file; writes thumbnail.png
+// words.jsonl: JSON lines.
+//   {"phase": "transmittance", "fraction": 0.25}      progress, any number of these
+//   {"done": {...}}                                   the last word: the facts of inspect, {} for bake
 //   {"error": {"kind": "bad_input", "message": "...", "field": ""}}   the last word of a failure
-// In messages every path of `names` is replaced by the name that the client knows.
+// In messages every path of `names` is replaced by the name that the client knows, and the work folder by "the store".
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "core/base/progress.h"
 
 namespace hairbake {
 
-/// Does what the task `text` (JSON) says; returns the object of "done". Throws Error.
-std::string run_task(const std::string& text, BakeProgress& progress);
+/// Does what the task `text` (JSON) says and writes the result to `folder`; returns the object of "done".
+/// Throws Error.
+std::string run_task(const std::string& text, const std::filesystem::path& folder, BakeProgress& progress);
 
-/// `message` with the paths of the `names` of the task `text` replaced.
-std::string with_names(std::string message, const std::string& text);
+/// `message` with the paths of the `names` of the task `text`, and `folder`, replaced.
+std::string with_names(std::string message, const std::string& text, const std::filesystem::path& folder);
 
 }  // namespace hairbake

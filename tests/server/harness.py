@@ -14,7 +14,7 @@ from pathlib import Path
 
 PROGRAMS = Path(os.environ.get("HAIRBAKE_PROGRAMS", Path(__file__).resolve().parents[2] / "build/bin"))
 TUS = {"Tus-Resumable": "1.0.0"}
-PATIENCE = float(os.environ.get("HAIRBAKE_PATIENCE", "120"))  # seconds; only ever reached by a failure
+PATIENCE = float(os.environ.get("HAIRBAKE_PATIENCE", "120"))  # seconds; only a failure takes so long
 
 
 def sha256(data):

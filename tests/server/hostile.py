@@ -1,12 +1,25 @@
 """Requests that no client sends by mistake, as bytes for a raw socket."""
 from harness import sha256
 
-STOLEN = b"smuggled"  # a blob that exists only when a part of another request was taken for a request
+STOLEN = b"smuggled"  # a blob that is stored only when a part of a request was served as a request of its own
 
 
 def smuggled(token):
     return (f"PUT /v1/blobs/{sha256(STOLEN)} HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer {token}\r\n"
             f"Content-Length: {len(STOLEN)}\r\n\r\n").encode() + STOLEN
+
+
+def smuggling_requests(token, put, chunks):
+    """Name -> text. Each hides the request smuggled() in another one; `put` and `chunks` are the beginnings of that."""
+    hidden = smuggled(token).decode()
+    address = hidden.split("\r\n")[0].replace(" ", "%20")
+    return {
+        "smuggled behind both framings": put + f"Content-Length: {5 + len(hidden)}\r\n" + chunks + "0\r\n\r\n" + hidden,
+        "smuggled in a chunk behind a short length": put + "Content-Length: 4\r\n" + chunks + f"{len(hidden):x}\r\n{hidden}\r\n0\r\n\r\n",
+        "smuggled behind a coding with a space": put + "Transfer-Encoding : chunked\r\nContent-Length: 5\r\n\r\n0\r\n\r\n" + "X" + hidden,
+        "smuggled behind two lengths": put + f"Content-Length: 0\r\nContent-Length: {len(hidden)}\r\n\r\n" + hidden,
+        "smuggled in an address": f"GET /v1/bakes%20HTTP/1.1%0d%0a%0d%0a{address} HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer {token}\r\n\r\n",
+    }
 
 
 def requests(token):
@@ -67,12 +80,5 @@ def requests(token):
         "TLS to a plain port": "\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03" + "\x00" * 64 + "\r\n\r\n",
         "only line ends": "\r\n" * 1000,
     }
-    hidden = smuggled(token).decode()
-    listed |= {
-        "smuggled behind both framings": put + f"Content-Length: {5 + len(hidden)}\r\n" + chunks + "0\r\n\r\n" + hidden,
-        "smuggled in a chunk behind a short length": put + "Content-Length: 4\r\n" + chunks + f"{len(hidden):x}\r\n{hidden}\r\n0\r\n\r\n",
-        "smuggled behind a coding with a space": put + "Transfer-Encoding : chunked\r\nContent-Length: 5\r\n\r\n0\r\n\r\n" + "X" + hidden,
-        "smuggled behind two lengths": put + f"Content-Length: 0\r\nContent-Length: {len(hidden)}\r\n\r\n" + hidden,
-        "smuggled in an address": line("/v1/bakes%20HTTP/1.1%0d%0a%0d%0a" + hidden.split("\r\n")[0].replace(" ", "%20")),
-    }
+    listed |= smuggling_requests(token, put, chunks)
     return {name: text.encode("latin-1") for name, text in listed.items()}

@@ -32,6 +32,7 @@ TEST_F(SettingsTest, TheDocumentedFileHasEveryDefault) {
     EXPECT_EQ(from_file.memory_bytes, defaults.memory_bytes);
     EXPECT_EQ(from_file.cpu_seconds, defaults.cpu_seconds);
     EXPECT_EQ(from_file.wall_seconds, defaults.wall_seconds);
+    EXPECT_EQ(from_file.runner, defaults.runner);
     EXPECT_EQ(from_file.max_crashes, defaults.max_crashes);
 }
 
@@ -41,6 +42,7 @@ TEST_F(SettingsTest, ReadsTokensAndPaths) {
              "\"\nscopes = [\"read\"]\nexpires = 1970-01-02T01:00:00+01:00\n");
     EXPECT_EQ(settings.store, folder / "x");
     ASSERT_EQ(settings.tokens.size(), 1u);
+    EXPECT_EQ(settings.tokens[0].scopes, std::set<Scope>{Scope::read});
     EXPECT_EQ(settings.tokens[0].expires, 86400);  // midnight UTC after one day
 }
 
@@ -60,6 +62,14 @@ TEST_F(SettingsTest, RefusesWhatIsNotAllowedByName) {
     settings.address = "0.0.0.0";
     settings.worker = "/bin/true";
     EXPECT_THROW(complete(settings), Error);
+    settings.address = "127.0.0.1";
+    settings.runner = "farm";
+    try {
+        complete(settings);
+        ADD_FAILURE() << "an unknown runner was taken";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.field(), "workers.runner");
+    }
 }
 
 }  // namespace

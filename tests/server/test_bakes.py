@@ -49,8 +49,21 @@ class Bakes(unittest.TestCase):
             for block in ("inputs", "transmittance", "irradiance", "repairs", "warnings", "conventions", "versions"):
                 self.assertEqual(ours[block], manifest[block], block)
             for file in manifest["files"]:
-                if file["name"] != "preview.png":  # one sheet a stage here, see server/README.md
+                if file["name"] != "preview.png":  # the service makes one sheet for each stage
                     self.assertEqual(sha256(self.daemon.file(view["id"], file["name"])), file["sha256"])
+
+    def test_fields_at_their_deprecated_places_give_the_same_bake_and_a_warning(self):
+        new = self.post(quick_request(environment=self.sky, environment_settings={"rotation_deg": [0, 30, 0], "exposure_stops": 1},
+                                      fiber={"kajiya_kay": {"exponent": 50}}))
+        self.assertIsNone(new.headers["Warning"])
+        self.assertEqual(self.daemon.wait(new.json["id"])["state"], "done")
+        old = self.post(quick_request(environment=self.sky, irradiance={"rotation_deg": [0, 30, 0], "exposure_stops": 1,
+                                                                        "exponent": 50}), status=200)
+        self.assertEqual(old.json["id"], new.json["id"])
+        warnings = old.headers.get_all("Warning")
+        self.assertEqual(len(warnings), 3)
+        for field in ("irradiance.rotation_deg", "irradiance.exposure_stops", "irradiance.exponent"):
+            self.assertTrue(any(w.startswith("299 - ") and field in w for w in warnings), (field, warnings))
 
     def test_files_are_what_the_manifest_says(self):
         view = self.bake(quick_request(self.hair, self.sky, outputs=["npy", "exr", "hair"]))
@@ -74,7 +87,7 @@ class Bakes(unittest.TestCase):
         first = self.bake(quick_request(self.hair, self.sky, transmittance={"seed": 7}, irradiance={"exponent": 20}))
         second = self.bake(quick_request(self.hair, self.sky, transmittance={"seed": 7}, irradiance={"exponent": 21}))
         self.assertNotEqual(first["id"], second["id"])
-        self.assertEqual(first["stages"][0], second["stages"][0])  # its attempts too: it ran once
+        self.assertEqual(first["stages"][0], second["stages"][0])  # attempts included: it ran once
         self.assertEqual(second["stages"][0]["attempts"], 1)
 
     def test_one_stage_alone(self):
@@ -112,7 +125,7 @@ class Bakes(unittest.TestCase):
         self.assertIn(f"sha256:{broken}", view["error"]["message"])  # not the path in the store
         self.assertNotIn(str(self.daemon.path), json.dumps(view))
         self.bake(quick_request(self.hair, self.sky, irradiance={"exponent": 33}))
-        # Asked for again it starts anew, with the same id.
+        # Requested again, it starts again under the same id.
         again = self.post(quick_request(broken, self.sky))
         self.assertEqual((again.json["id"], again.json["attempts"]), (view["id"], 2))
         self.daemon.wait(view["id"])
@@ -158,7 +171,7 @@ class Rebakes(unittest.TestCase):
             dry = d.ask("POST", "/v1/rebakes?dry_run=1", body).json
             self.assertEqual(dry, {"bakes": 5, "done_bakes": 0, "reused_stages": {"transmittance": 5, "irradiance": 0},
                                    "computed_stages": {"transmittance": 0, "irradiance": 1}})
-            self.assertEqual(d.ask("GET", f"/v1/bakes?environment={new}").json["bakes"], [])  # a dry run does nothing
+            self.assertEqual(d.ask("GET", f"/v1/bakes?environment={new}").json["bakes"], [])  # a dry run changes nothing
             reply = d.ask("POST", "/v1/rebakes", body)
             self.assertEqual(reply.status, 202)
             batch = reply.headers["Location"]
@@ -169,7 +182,7 @@ class Rebakes(unittest.TestCase):
             stages = {s["key"]: s for b in members for s in d.ask("GET", f"/v1/bakes/{b['id']}").json["stages"]}
             self.assertEqual(len(stages), 6)  # five grooms, one lighting
             self.assertEqual({s["attempts"] for s in stages.values()}, {1})
-            # The new lighting is in the maps: red is brighter by 200/100, green is as it was.
+            # The maps show the new lighting: red is brighter by 200/100, green is unchanged.
             manifests = [json.loads(d.file(b["id"], "manifest.json")) for b in members]
             before = json.loads(d.file(d.ask("GET", f"/v1/bakes?environment={old}").json["bakes"][0]["id"], "manifest.json"))
             ratio = [n / o for n, o in zip(manifests[0]["irradiance"]["diffuse"]["mean"], before["irradiance"]["diffuse"]["mean"])]
@@ -185,19 +198,19 @@ class Rebakes(unittest.TestCase):
             for model in models[:2]:
                 self.bake(d, {**quick_request(model), "environment": "name:stage1/dusk"})
             self.bake(d, quick_request(models[2], noon))
-            # Two were baked under the name; their transmittance is there, the new lighting is not.
+            # Two were baked under the name. Their transmittance is stored; the new lighting is not.
             body = {"environment": f"sha256:{new}", "name": "stage1/dusk"}
             self.rebake(d, body, reused=(2, 0), computed=(0, 1), members={(models[0], new), (models[1], new)})
-            # Now the new lighting is there as well: everything is done in the reply already.
+            # Now the new lighting is stored as well: the reply says that all bakes are done.
             body = {"environment": f"sha256:{new}", "models": [f"sha256:{models[2]}"]}
             self.rebake(d, body, reused=(1, 1), computed=(0, 0), members={(models[2], new)})
-            # The name may move on and be what the bakes get.
+            # A name that has moved to another version can be the new environment.
             d.ask("PUT", "/v1/names/environment/stage1/dusk", {"sha256": noon})
             body = {"environment": "name:stage1/dusk", "models": [f"sha256:{m}" for m in models]}
             batch = self.rebake(d, body, reused=(3, 1), computed=(0, 0), members={(m, noon) for m in models}, done=1)
             self.assertEqual([b["names"].get("environment") for b in batch], [{"path": "stage1/dusk", "version": 2}] * 3)
             for wrong, field in (({"name": "stage1/dawn"}, "name"), ({"models": [f"sha256:{new}"]}, "models"),
-                                 ({"models": [f"sha256:{models[0]}"], "name": "stage1/dusk"}, None)):  # it is either
+                                 ({"models": [f"sha256:{models[0]}"], "name": "stage1/dusk"}, None)):  # exactly one selection is allowed
                 reply = d.ask("POST", "/v1/rebakes", {"environment": f"sha256:{new}", **wrong})
                 self.assertEqual((reply.status, reply.json.get("field")), (422, field), reply.body)
 
@@ -216,6 +229,15 @@ class Rebakes(unittest.TestCase):
                 self.assertEqual(manifest["irradiance"]["face_size"], 8)
                 # Six faces of 8 x 8 texels of three floats, behind numpy's header of a multiple of 64 bytes.
                 self.assertIn(len(d.file(bake["id"], "diffuse.npy")) - 6 * 8 * 8 * 3 * 4, (64, 128))
+            body["environment_settings"] = {"exposure_stops": 1}
+            batch = self.rebake(d, body, reused=(2, 0), computed=(0, 1), members={(m, new) for m in models})
+            for bake in batch:
+                settings = d.ask("GET", f"/v1/bakes/{bake['id']}").json["request"]
+                self.assertEqual((settings["environment_settings"]["exposure_stops"], settings["irradiance"]["face_size"]), (1, 8))
+            body["irradiance"]["exposure_stops"] = body.pop("environment_settings")["exposure_stops"]  # the deprecated place
+            reply = d.ask("POST", "/v1/rebakes?dry_run=1", body)
+            self.assertEqual(reply.json["done_bakes"], 2, reply.body)
+            self.assertIn("irradiance.exposure_stops", reply.headers["Warning"])
             body["irradiance"] = {"face_size": -8}
             self.assertEqual(d.ask("POST", "/v1/rebakes", body).json["field"], "irradiance.face_size")
 
@@ -235,12 +257,12 @@ class Rebakes(unittest.TestCase):
             # Each stage alone is stored too.
             self.assertEqual(d.ask("POST", "/v1/bakes", quick_request(hair)).status, 200)
             self.assertEqual(d.ask("POST", "/v1/bakes", quick_request(environment=old)).status, 200)
-            # A new lighting needs of the groom what is stored, and of the old lighting nothing.
+            # A new lighting needs the stored transmittance of the groom, and nothing of the old lighting.
             body = {"environment": f"sha256:{new}", "replaces": f"sha256:{old}"}
             batch = self.rebake(d, body, reused=(1, 0), computed=(0, 1), members={(hair, new)})
             stages = d.ask("GET", f"/v1/bakes/{batch[0]['id']}").json["stages"]
-            self.assertEqual(stages[0], bake["stages"][0])  # its attempts too: it ran once
-            # What would have to be computed of a file that is gone is refused, and the file named.
+            self.assertEqual(stages[0], bake["stages"][0])  # attempts included: it ran once
+            # A stage that must be computed from a deleted file is refused, and the reply names the file.
             for request, field in ((quick_request(hair, new, transmittance={"seed": 2, "direction_set": "random"}), "hair"),
                                    (quick_request(hair, old, irradiance={"exponent": 9}), "environment"),
                                    (quick_request(environment=old, irradiance={"exponent": 9}), "environment")):
@@ -250,7 +272,7 @@ class Rebakes(unittest.TestCase):
             body = {"environment": f"sha256:{old}", "irradiance": {"exponent": 9}, "models": [f"sha256:{hair}"]}
             reply = d.ask("POST", "/v1/rebakes", body)
             self.assertEqual((reply.status, reply.json["field"]), (422, "environment"), reply.body)
-            # Sent again, it is baked.
+            # After the file is sent again, the request is baked.
             d.put(hair_bytes())
             self.bake(d, quick_request(hair, new, transmittance={"seed": 2, "direction_set": "random"}))
 
@@ -263,7 +285,7 @@ class Rebakes(unittest.TestCase):
 
     def rebake(self, d, body, reused, computed, members, done=0):
         """The batch's bakes, once done. `reused` and `computed` count transmittance and irradiance stages; `members` are pairs of
-        model and environment; `done` of them are there before."""
+        model and environment; `done` of them were done before."""
         kinds = ("transmittance", "irradiance")
         dry = d.ask("POST", "/v1/rebakes?dry_run=1", body)
         self.assertEqual(dry.status, 200, dry.body)
@@ -282,7 +304,7 @@ class Rebakes(unittest.TestCase):
 
 
 class ManyRebakes(unittest.TestCase):
-    GROOMS = 1000  # how long they take is measured by tests/bench/bench_service.py
+    GROOMS = 1000  # tests/bench/bench_service.py measures the time
 
     def test_the_maps_are_baked_once_for_a_thousand_grooms(self):
         with Daemon(workers=2) as d:
@@ -290,7 +312,7 @@ class ManyRebakes(unittest.TestCase):
             for seed in range(self.GROOMS):
                 reply = d.ask("POST", "/v1/bakes", quick_request(d.put(hair_bytes(strands=4, points=4, seed=seed)), old))
                 self.assertIn(reply.status, (200, 202), reply.body)
-            # A bake whose maps are there counts as running while its groom waits for a worker.
+            # A bake whose maps are stored is running while its groom waits for a worker.
             for state in ("queued", "running"):
                 self.wait_until(d, lambda: not d.ask("GET", f"/v1/bakes?state={state}&limit=1").json["bakes"])
             body = {"environment": f"sha256:{new}", "replaces": f"sha256:{old}"}
@@ -328,7 +350,7 @@ class Names(unittest.TestCase):
                 self.assertEqual(reply["environment"], digest)
                 self.assertEqual(reply["names"]["environment"], {"path": "stage1/sunset", "version": version})
             self.assertEqual(len(d.ask("GET", "/v1/bakes?name=stage1/sunset").json["bakes"]), 2)
-            # A bake that is there already and is asked for by a name follows that name from then on.
+            # A done bake that is requested by a name belongs to that name from then on.
             bake = d.wait(d.ask("POST", "/v1/bakes", quick_request(hair, d.put(hdr_bytes(red=92)))).json["id"])["id"]
             d.ask("PUT", "/v1/names/environment/dusk", {"sha256": sha256(hdr_bytes(red=92))})
             self.assertEqual(d.ask("GET", "/v1/bakes?name=dusk").json["bakes"], [])

@@ -1,4 +1,4 @@
-"""What the service is deployed with: units of systemd; and what others read of it: the OpenAPI document, the metrics."""
+"""The files of a deployment: systemd units, the OpenAPI document, the metrics."""
 import subprocess
 import tempfile
 import unittest
@@ -28,7 +28,7 @@ class Systemd(unittest.TestCase):
         for unit in UNITS:
             with tempfile.TemporaryDirectory() as folder:
                 copy = Path(folder, unit.name)
-                # The programs are in other places here.
+                # The programs are elsewhere in a build tree.
                 copy.write_text(unit.read_text().replace("/usr/local/bin/hairbaked ", "/bin/true ").replace("After=network.target", "After="))
                 code, text = run("systemd-analyze", "verify", "--man=no", "--recursive-errors=no", copy)
                 self.assertEqual((code, text), (0, ""), unit.name)

@@ -76,7 +76,7 @@ class Disk(unittest.TestCase):
             ready = d.ask("GET", "/readyz")
             self.assertEqual((ready.status, ready.json["type"]), (503, "urn:hairbake:problem:not-ready"))
             self.assertIn("No space left", ready.json["detail"])
-            self.assertEqual(d.ask("POST", "/v1/bakes", quick_request(hair, sky)).status, 200)  # done before: nothing is written
+            self.assertEqual(d.ask("POST", "/v1/bakes", quick_request(hair, sky)).status, 200)  # a done bake: nothing is written
             verified(self, d, bake)
             self.assertEqual(d.leftovers(), [])
 

@@ -1,4 +1,4 @@
-"""The rim: routes, framing, ranges, access, uploads."""
+"""The HTTP server: routes, framing, ranges, access, uploads."""
 import email.utils
 import json
 import re
@@ -30,7 +30,7 @@ class Page(unittest.TestCase):
             (web / "app/main.js").write_text("export {};")
             (web / "secret.txt").write_text("not of a page's kinds")
             with Daemon(config=f'[web]\nfolder = "{web}"') as d:
-                (web / "app/late.js").write_text("export {};")  # comes after the start
+                (web / "app/late.js").write_text("export {};")  # written after the start
                 index = d.ask("GET", "/")
                 self.assertEqual((index.status, index.headers["Content-Type"]), (200, "text/html; charset=utf-8"))
                 self.assertEqual(index.headers["Cache-Control"], "no-cache")
@@ -63,7 +63,7 @@ class Page(unittest.TestCase):
             d.process.stdout.close()
 
 
-class Rim(unittest.TestCase):
+class HttpServer(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.daemon = Daemon().__enter__()
@@ -214,7 +214,7 @@ class Rim(unittest.TestCase):
         for text in ("2000-", "2000-2001", "-0"):
             wrong = get(Range=f"bytes={text}")
             self.assertEqual((wrong.status, wrong.headers["Content-Range"]), (416, "bytes */2000"), text)
-        self.assertEqual(get(Range="bytes=0-1,5-6").body, data)  # several are answered with the whole
+        self.assertEqual(get(Range="bytes=0-1,5-6").body, data)  # several ranges: the whole file
         self.assertEqual(get(Range="bytes=0-1", If_Range=tag).status, 206)
         self.assertEqual(get(Range="bytes=0-1", If_Range='"other"').body, data)
         self.assertEqual(get(If_None_Match=f'W/"x", {tag}').status, 304)
@@ -250,7 +250,7 @@ class Process(unittest.TestCase):
             self.assertEqual((lacking.status, lacking.json["type"]), (503, "urn:hairbake:problem:not-ready"))
             self.assertIn("worker program", lacking.json["detail"])
             self.assertIsNotNone(lacking.headers["Retry-After"])
-            self.assertEqual(d.ask("GET", "/healthz").status, 200)  # alive all the same
+            self.assertEqual(d.ask("GET", "/healthz").status, 200)  # still alive
             (d.path / "aside").rename(program)
             self.assertEqual(d.ask("GET", "/readyz").status, 200)
 
@@ -261,7 +261,7 @@ class Process(unittest.TestCase):
             broken = d.put(hair_bytes()[:200])
             d.wait(d.ask("POST", "/v1/bakes", quick_request(broken)).json["id"])
             d.stop()
-            d.blob_file(hair).write_bytes(hair_bytes(seed=1))  # as long as it was
+            d.blob_file(hair).write_bytes(hair_bytes(seed=1))  # of the same length
             d.blob_file(broken).unlink()
             d.start()
             self.assertEqual(d.ask("GET", f"/v1/blobs/{hair}").status, 503)
@@ -288,7 +288,7 @@ class Process(unittest.TestCase):
 
         for library in ("openvdb", "embree", "openimageio", "tbb"):
             self.assertNotIn(library, needed("hairbaked"))
-            self.assertIn(library, needed("hairbake-worker"))  # or the words would be wrong ones
+            self.assertIn(library, needed("hairbake-worker"))  # else the check above means nothing
 
 
 class Tokens(unittest.TestCase):
@@ -321,7 +321,7 @@ class Tokens(unittest.TestCase):
                 return d.ask("GET", "/v1/bakes", headers={"Cookie": cookie}).status
 
             other = open_session("one")
-            sessions = [open_session("many") for _ in range(1000)]  # what a token may have
+            sessions = [open_session("many") for _ in range(1000)]  # as many as one token may have
             self.assertEqual(status(sessions[0]), 200)
             sessions.append(open_session("many"))
             self.assertEqual([status(cookie) for cookie in (sessions[0], sessions[1], sessions[-1], other)], [401, 200, 200, 200])
@@ -368,7 +368,7 @@ class Uploads(unittest.TestCase):
             self.assertEqual(reply.status, 201, reply.body)
             path = reply.headers["Location"]
             self.assertEqual(d.append(path, 0, data[:1000]).headers["Upload-Offset"], "1000")
-            # A connection that breaks in the middle of a PATCH: what came stays.
+            # A connection that breaks during a PATCH: the received bytes stay.
             with socket.create_connection(("127.0.0.1", d.port)) as s:
                 s.sendall((f"PATCH {path} HTTP/1.1\r\nHost: localhost\r\nTus-Resumable: 1.0.0\r\nUpload-Offset: 1000\r\n"
                            f"Content-Type: application/offset+octet-stream\r\nContent-Length: {len(data) - 1000}\r\n\r\n").encode()
@@ -392,7 +392,7 @@ class Uploads(unittest.TestCase):
             self.assertEqual(d.ask("OPTIONS", "/v1/uploads").headers["Tus-Extension"], "creation,termination,expiration")
             path = d.create_upload(b"right", sha256(b"other")).headers["Location"]
             self.assertEqual(d.append(path, 0, b"right!").status, 413)  # beyond its length
-            self.assertEqual(d.append(path, 0, b"right").status, 422)  # of another digest: gone
+            self.assertEqual(d.append(path, 0, b"right").status, 422)  # of another digest: deleted
             self.assertEqual(d.ask("HEAD", path, headers=TUS).status, 404)
             path = d.create_upload(b"given up").headers["Location"]
             self.assertEqual(d.ask("DELETE", path, headers=TUS).status, 204)
@@ -414,10 +414,10 @@ class Uploads(unittest.TestCase):
             reply = d.create_upload(b"hello")
             path, after = reply.headers["Location"], time.time()
             expires = self.date(reply)
-            # The date has whole seconds: it lies up to one before.
+            # The date has whole seconds, so it can be up to one second early.
             self.assertTrue(before + lifetime - 1 < expires <= after + lifetime, (before, expires, after))
             before = time.time()
-            expires = self.date(d.append(path, 0, b"he"))  # it grows: counted from now
+            expires = self.date(d.append(path, 0, b"he"))  # it received bytes: counted from now
             self.assertTrue(before + lifetime - 1 < expires <= time.time() + lifetime)
             self.assertEqual(len(list((d.path / "store/uploads").iterdir())), 1)
             d.stop()
@@ -426,7 +426,7 @@ class Uploads(unittest.TestCase):
             self.assertIn(d.ask("HEAD", path, headers=TUS).status, (404, 410))
             self.assertIn(d.append(path, 2, b"llo").status, (404, 410))
             self.assertEqual(list((d.path / "store/uploads").iterdir()), [])
-            self.assertEqual(d.create_upload(b"hello").status, 201)  # it may be begun again
+            self.assertEqual(d.create_upload(b"hello").status, 201)  # a new one can be created
 
     @staticmethod
     def date(reply):

@@ -1,4 +1,4 @@
-"""What a client may take of the daemon: memory, connections, sockets, unfinished uploads."""
+"""Limits of what a client can use: memory, connections, sockets, unfinished uploads."""
 import hashlib
 import json
 import os
@@ -8,7 +8,7 @@ import unittest
 from harness import PATIENCE, PROGRAMS, Daemon, base64_text, hair_bytes, hdr_bytes, quick_request, sha256
 
 MEGABYTE = 1 << 20
-UPLOAD_MB, GROWTH_MB = 500, 64  # what the issue says
+UPLOAD_MB, GROWTH_MB = 500, 64  # of the first specification
 PIECE = os.urandom(MEGABYTE)
 
 
@@ -71,7 +71,7 @@ class BigUploads(unittest.TestCase):
             status, headers, body = reply_on_only_head(d, f"Content-Length: {MEGABYTE + 1}")
             self.assertEqual((status, headers["Content-Type"]), (413, "application/problem+json"))
             self.assertIn(f"allowed is up to {MEGABYTE}", json.loads(body)["detail"])
-            # With Expect too, be it that 100 comes first.
+            # With Expect, too; the reply may follow a 100.
             self.assertEqual(reply_on_only_head(d, f"Content-Length: {MEGABYTE + 1}", "Expect: 100-continue")[0], 413)
 
     def test_chunks_over_the_limit_are_refused_as_soon_as_they_pass_it(self):
@@ -94,7 +94,7 @@ class Connections(unittest.TestCase):
     def test_a_full_queue_answers_503_and_says_when_to_come_again(self):
         with Daemon(listen="port = 0\nthreads = 2\nwaiting = 3") as d:
             held = []
-            for _ in range(2):  # each holds a thread: it was asked for its body
+            for _ in range(2):  # each occupies a thread, which waits for the body
                 s = d.connect()
                 s.sendall(head("PUT", f"/v1/blobs/{sha256(b'hello')}", "Content-Length: 5", "Expect: 100-continue"))
                 self.assertEqual(received(s, 25), b"HTTP/1.1 100 Continue\r\n\r\n")
@@ -113,9 +113,9 @@ class Connections(unittest.TestCase):
             self.assertEqual(d.ask("GET", "/healthz").status, 200)
 
     def test_out_of_descriptors_it_says_so_and_serves_again_when_there_are_some(self):
-        with Daemon(before=["prlimit", "--nofile=48:48"]) as d:  # it has about twenty when nobody asks
+        with Daemon(before=["prlimit", "--nofile=48:48"]) as d:  # an idle daemon has about twenty
             idle = [d.connect() for _ in range(60)]
-            d.wait_for_log("no connection can be accepted for now: Too many open files")
+            d.wait_for_log("no connection can be accepted at present: Too many open files")
             for s in idle:
                 s.close()
             self.assertEqual(d.ask("GET", "/healthz").status, 200)
@@ -151,7 +151,7 @@ class Connections(unittest.TestCase):
             def create(token, size):
                 return ask("POST", "/v1/uploads", token, **{"Upload-Length": str(size),
                                                             "Upload-Metadata": f"sha256 {base64_text(sha256(b'hello'))}"})
-            first = create("a", 600_000)  # a large one goes, alone
+            first = create("a", 600_000)  # a large one is allowed when it is the only one
             self.assertEqual(first.status, 201)
             own = create("a", 1)
             self.assertEqual((own.status, own.json["type"]), (429, "urn:hairbake:problem:too-many"))
@@ -167,7 +167,7 @@ class Connections(unittest.TestCase):
 
             def create(**metadata):
                 return d.ask("POST", "/v1/uploads", headers={"Tus-Resumable": "1.0.0", "Upload-Length": str(1 << 20), **metadata})
-            self.assertEqual(create().status, 400)  # it has no digest; with one, all results would go for it
+            self.assertEqual(create().status, 400)  # without a digest; with one, all results would be evicted for it
             self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}").json["state"], "done")
             self.assertEqual(create(**{"Upload-Metadata": f"sha256 {base64_text(sha256(b'hello'))}"}).status, 201)
             self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}").status, 404)
@@ -182,13 +182,13 @@ class UnixSocket(unittest.TestCase):
             bake = d.ask("POST", "/v1/bakes", quick_request(d.put(hair_bytes()), d.put(hdr_bytes()))).json["id"]
             self.assertEqual(d.wait(bake)["state"], "done")
             d.kill()
-            self.assertTrue(os.path.exists(d.address))  # what a killed daemon leaves
+            self.assertTrue(os.path.exists(d.address))  # a killed daemon leaves it
             d.start()
             self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}").json["state"], "done")
 
     def test_a_socket_that_somebody_listens_on_and_a_file_are_left_alone(self):
         with SocketDaemon() as d, SocketDaemon() as other:
-            for place, words in ((d.address, "somebody listens on the socket"), (str(d.path / "log"), "is no socket")):
+            for place, words in ((d.address, "another process listens on the socket"), (str(d.path / "log"), "is no socket")):
                 code, log = other.start_on(place)
                 self.assertEqual(code, 2)
                 self.assertIn(words, log)

@@ -37,7 +37,7 @@ def probe(target, data):
         except TimeoutError:
             s.settimeout(PATIENCE)
         except (BrokenPipeError, ConnectionResetError):
-            pass  # an answer may have come before
+            pass  # the reply may have come before
         try:
             s.shutdown(socket.SHUT_WR)
             while piece := s.recv(65536):
@@ -103,7 +103,7 @@ class FilesTest:
             wrong = get(Range=f"bytes={text}")
             self.assertEqual((wrong.status, wrong.headers["Content-Range"], wrong.headers["Content-Type"]),
                              (416, "bytes */2000", "application/problem+json"), text)
-        self.assertEqual(get(Range="bytes=0-1,5-6").body, data)  # several are answered with the whole
+        self.assertEqual(get(Range="bytes=0-1,5-6").body, data)  # several ranges: the whole file
         self.assertEqual(get(Range="bytes=0-1", If_Range=tag).status, 206)
         self.assertEqual(get(Range="bytes=0-1", If_Range='"other"').body, data)
         self.assertEqual(get(If_None_Match=f'W/"x", {tag}').status, 304)
@@ -146,7 +146,7 @@ class FilesOverLoopback(FilesTest, unittest.TestCase):
         self.assertEqual(word("/v1/bakes", **forwarded)[1], "no")
         self.assertIsNone(word("/v1/bakes")[1])
         size, buffering = word("/openapi.json", **forwarded)
-        self.assertGreater(size, 6144)  # more than nginx has with its first read
+        self.assertGreater(size, 6144)  # more than nginx's first read
         self.assertIsNone(buffering)
         size, buffering = word("/metrics", **forwarded, **{"Accept-Encoding": "gzip"})
         self.assertGreater(size, 1000)  # nginx compresses it
@@ -235,7 +235,7 @@ class Gate(unittest.TestCase):
             head = f"PUT /v1/blobs/{'0' * 64} HTTP/1.1\r\n{AUTHORITY}Content-Length: 1000000\r\n\r\n".encode()
             slow = []
             try:
-                for _ in range(80):  # of which nginx passes on 48
+                for _ in range(80):  # nginx forwards 48 of them
                     slow.append(socket.create_connection(("127.0.0.1", f.port)))
                     slow[-1].sendall(head + b"x")
                 self.assertEqual(f.ask("GET", "/healthz").status, 200)
@@ -310,7 +310,7 @@ class Hostile(unittest.TestCase):
             if before is None:  # the first round brings threads and buffers to life
                 before = {p: resident_bytes(p) for p in processes}
         self.check_nothing_was_stored()
-        # A header of 100 MB or of 10 MB that was held on to would stand out of 8 MB.
+        # A kept header of 10 or 100 MB would exceed 8 MB.
         for process in processes:
             self.assertLess(resident_bytes(process) - before[process], 8 << 20)
 

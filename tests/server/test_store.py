@@ -1,4 +1,4 @@
-"""What is stored: bytes that rot or cannot be read, and a full budget."""
+"""The store: damaged and unreadable files, and the budget."""
 import os
 import unittest
 
@@ -44,7 +44,7 @@ class Blobs(unittest.TestCase):
             self.assertEqual((reply.status, reply.headers["Content-Type"]), (503, "application/problem+json"), reply.body)
             self.assertEqual(d.ask("GET", f"/v1/models/{digest}").status, 404)
             self.assertEqual(d.ask("HEAD", f"/v1/blobs/{digest}").status, 404)
-            self.assertEqual(d.ask("POST", "/v1/models", {"sha256": digest}).status, 422)  # to be sent first
+            self.assertEqual(d.ask("POST", "/v1/models", {"sha256": digest}).status, 422)  # the file must be sent first
             self.assertEqual(d.put(right), digest)
             reply = d.ask("POST", "/v1/models", {"sha256": digest})
             self.assertEqual(reply.status, 201, reply.body)
@@ -120,14 +120,14 @@ class Blobs(unittest.TestCase):
 class Budget(unittest.TestCase):
     def test_what_is_stored_may_be_sent_to_a_full_store(self):
         with Daemon(config="budget_mb = 1\nblob_mb = 1") as d:
-            # 1,048,576 bytes are allowed. These are 1,000,000 and stay, as names point at them.
+            # 1,048,576 bytes are allowed. These 1,000,000 stay, since names point at them.
             kept = [os.urandom(600_000), os.urandom(400_000)]
             for number, data in enumerate(kept):
                 d.ask("PUT", f"/v1/names/mesh/{number}", {"sha256": d.put(data)})
             loose = d.put(b"nothing needs this")
             for data in kept:
                 self.assertEqual(d.ask("PUT", f"/v1/blobs/{sha256(data)}", data).status, 200)
-                self.assertEqual(d.ask("HEAD", f"/v1/blobs/{loose}").status, 200)  # it need not have gone
+                self.assertEqual(d.ask("HEAD", f"/v1/blobs/{loose}").status, 200)  # it was not evicted
             other = os.urandom(600_000)
             self.assertEqual(d.ask("PUT", f"/v1/blobs/{sha256(other)}", other).status, 507)
             for data in kept:
@@ -135,7 +135,7 @@ class Budget(unittest.TestCase):
 
     def test_a_body_in_chunks_that_does_not_fit_is_refused_when_it_is_whole(self):
         with Daemon(config="budget_mb = 1\nblob_mb = 1") as d:
-            # Of 1,048,576 bytes 600,000 stay, as a name points at them.
+            # Of 1,048,576 bytes 600,000 stay, since a name points at them.
             kept, big, small = os.urandom(600_000), os.urandom(448_577), os.urandom(448_576)
             d.ask("PUT", "/v1/names/mesh/kept", {"sha256": d.put(kept)})
             file = {"Content-Type": "application/octet-stream"}
@@ -144,7 +144,7 @@ class Budget(unittest.TestCase):
                 self.assertEqual(d.ask("HEAD", f"/v1/blobs/{sha256(big)}").status, 404)
                 self.assertEqual(d.leftovers(), [])
             self.assertEqual(d.ask("PUT", f"/v1/blobs/{sha256(small)}", iter([small])).status, 201)
-            self.assertEqual(d.ask("PUT", f"/v1/blobs/{sha256(kept)}", iter([kept])).status, 200)  # known: needs no room
+            self.assertEqual(d.ask("PUT", f"/v1/blobs/{sha256(kept)}", iter([kept])).status, 200)  # stored already: needs no room
             self.assertEqual(d.ask("GET", f"/v1/blobs/{sha256(small)}").body, small)
 
     def test_an_upload_that_finds_no_room_at_its_end_waits_for_it(self):
@@ -178,14 +178,14 @@ class Budget(unittest.TestCase):
                 bakes.append(d.ask("POST", "/v1/bakes", quick_request(models[-1])).json["id"])
                 self.assertEqual(d.wait(bakes[-1])["state"], "done")
             results = [sum(file["bytes"] for file in d.ask("GET", f"/v1/bakes/{bake}").json["files"][1:]) for bake in bakes]
-            self.assertGreater(sum(results[1:]), budget // 100 * 3)  # or there would not be enough to go
+            self.assertGreater(sum(results[1:]), budget // 100 * 3)  # else there is not enough to evict
             d.put(os.urandom(budget - self.stored(d)))  # it fits to the byte: all stay
             self.assertEqual({d.ask("GET", f"/v1/bakes/{bake}").status for bake in bakes}, {200})
             d.put(b"x")
             gone = [size for bake, size in zip(bakes, results) if d.ask("GET", f"/v1/bakes/{bake}").status == 404]
             free = budget - self.stored(d)
             self.assertGreaterEqual(free, budget // 100 * 3)
-            self.assertLess(free - max(gone), budget // 100 * 3)  # the last that went had to go
+            self.assertLess(free - max(gone), budget // 100 * 3)  # the last eviction was necessary
             self.assertLess(len(gone), len(bakes))
             for model in models:
                 self.assertEqual(d.ask("HEAD", f"/v1/blobs/{model}").status, 200)
@@ -200,13 +200,13 @@ class Budget(unittest.TestCase):
             d.ask("PUT", "/v1/names/model/kept", {"sha256": hair})
             bake = d.ask("POST", "/v1/bakes", quick_request(hair)).json["id"]
             self.assertEqual(d.wait(bake)["state"], "done")
-            digests = [d.put(os.urandom(600_000)) for _ in range(3)]  # two of these are over the budget
+            digests = [d.put(os.urandom(600_000)) for _ in range(3)]  # two of these exceed the budget
             self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}").status, 404)  # forgotten
             self.assertEqual([d.ask("HEAD", f"/v1/blobs/{x}").status for x in digests], [404, 404, 200])
             self.assertEqual(d.ask("HEAD", f"/v1/blobs/{hair}").status, 200)  # a name points at it
             reply = d.ask("PUT", f"/v1/blobs/{sha256(b'y' * 2_000_000)}", b"y" * 2_000_000)
             self.assertEqual(reply.status, 413)
-            # When all that is stored is needed, there is no room.
+            # When all blobs are needed, there is no room.
             big = os.urandom(900_000)
             d.ask("PUT", "/v1/names/mesh/big", {"sha256": d.put(big)})
             reply = d.ask("PUT", f"/v1/blobs/{sha256(b'z' * 900_000)}", b"z" * 900_000)

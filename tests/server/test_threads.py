@@ -16,7 +16,7 @@ TUS = {"Tus-Resumable": "1.0.0"}
 
 
 class Client:
-    """Asks for a bit of everything, as others do at the same time for the same and for other things."""
+    """Sends requests of all kinds, at the same time as other clients."""
 
     def __init__(self, daemon, number):
         self.daemon, self.number, self.failure = daemon, number, None
@@ -25,7 +25,7 @@ class Client:
         try:
             for round_number in range(ROUNDS):
                 self.one_round(round_number)
-        except Exception as error:  # told by the test
+        except Exception as error:  # reported by the test
             self.failure = error
 
     def expect(self, statuses, *question, **more):

@@ -31,7 +31,7 @@ struct Pair {
     void send(const std::string& text) const {
         EXPECT_EQ(::send(client, text.data(), text.size(), MSG_NOSIGNAL), ssize_t(text.size()));
     }
-    /// What lies there for the client now.
+    /// The bytes that the client can read now.
     std::string received() const {
         std::string text(1 << 16, '\0');
         const ssize_t count = ::recv(client, text.data(), text.size(), MSG_DONTWAIT);
@@ -56,7 +56,7 @@ std::string read(Connection& connection, std::size_t size) {
     return text;
 }
 
-/// Bytes none of whose neighbours are alike, so that a piece lost, doubled or swapped is seen.
+/// Bytes in which a lost, doubled or swapped piece shows.
 std::string numbered(std::size_t size) {
     std::string bytes(size, '\0');
     for (std::size_t i = 0; i < size; ++i) bytes[i] = static_cast<char>((i * 2654435761u) >> 13);
@@ -94,7 +94,7 @@ TEST(Connection, WhatWasWrittenLeavesBeforeMoreIsRead) {
 }
 
 TEST(Connection, AClientThatReadsSlowlyGetsEveryByteInOrder) {
-    // Many times what a socket holds (some 200 KiB), in pieces below and above what is held back (16 KiB).
+    // Many times what a socket holds (some 200 KiB), in pieces smaller and larger than the write buffer (16 KiB).
     Pair pair(long_patience);
     const std::string sent = numbered(8 << 20);
     std::string got;
@@ -140,7 +140,7 @@ TEST(Connection, AClientThatIsSilentOrDoesNotReadIsGivenUp) {
 }
 
 TEST(Connection, NobodyIsWaitedForAnyMoreWhenTheServiceEnds) {
-    Pair pair(long_patience);  // the test would last a minute
+    Pair pair(long_patience);  // else the test lasts a minute
     int asked = 0;
     EXPECT_FALSE(pair.connection.await_request([&] { return ++asked < 3; }));
 }

@@ -16,7 +16,7 @@
 namespace hairbake {
 namespace {
 
-/// A port of the loopback that is listened on.
+/// A listening port of the loopback.
 struct Door {
     Door() {
         address.sin_family = AF_INET;
@@ -31,7 +31,7 @@ struct Door {
         forget_clients();
         ::close(listening);
     }
-    /// A client that does not get in would be waited for without end.
+    /// Fails instead of waiting for ever for a client that cannot connect.
     void knock() {
         clients.push_back(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
         if (::connect(clients.back(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
@@ -47,7 +47,7 @@ struct Door {
     std::vector<int> clients;
 };
 
-/// Handlers that note what they get; who serves waits until it is let go.
+/// Handlers that record their connections. A serving thread waits until it is released.
 struct House {
     void serve(int socket) {
         std::unique_lock lock(mutex);
@@ -84,14 +84,14 @@ struct House {
     bool open = false;
 };
 
-/// The threads of a house behind a door, run beside the test.
+/// ConnectionThreads that run beside the test.
 struct Running {
     Running(int count, int waiting)
         : threads(
               door.listening, count, waiting, [this](int socket) { house.serve(socket); },
               [this](int socket) { house.refuse(socket); }),
           runner([this] { threads.run(); }) {}
-    ~Running() {  // of a test that was left in the middle
+    ~Running() {  // when the test failed
         house.let_go();
         threads.stop();
     }
@@ -171,7 +171,7 @@ TEST(ConnectionThreads, EndAtOnceWhenTheyWereStoppedBefore) {
 }
 
 TEST(ConnectionThreads, EndWhenTheSocketCannotAccept) {
-    const int deaf = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);  // listens to nothing: EINVAL
+    const int deaf = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);  // does not listen: EINVAL
     EXPECT_EQ(served_by(deaf, false), 0);
     ::close(deaf);
 }

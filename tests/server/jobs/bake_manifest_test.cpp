@@ -20,7 +20,8 @@ const std::string irradiance =
     "warnings": ["b"], "files": [{"name": "preview.png"}], "timings_s": {"irradiance": 4, "write": 8}, "peak_memory_bytes": 30})";
 
 TEST(BakeManifest, JoinsItsStages) {
-    const Json whole = Json::parse(make_bake_manifest("id", R"({"hair": "sha256:x"})", transmittance, irradiance));
+    const Json whole = Json::parse(make_bake_manifest("id", R"({"hair": "sha256:x"})",
+                                                      {{"transmittance", transmittance}, {"irradiance", irradiance}}));
     EXPECT_EQ(whole["id"], "id");
     EXPECT_EQ(whole["request"]["hair"], "sha256:x");
     EXPECT_EQ(whole["stages"], Json::parse(R"({"transmittance": {"key": "k"}, "irradiance": {"key": "l"}})"));
@@ -35,8 +36,21 @@ TEST(BakeManifest, JoinsItsStages) {
                                               {"name": "preview_irradiance.png"}])"));
 }
 
+TEST(BakeManifest, JoinsAnyNumberOfStages) {
+    const auto part = [](const std::string& kind) {
+        return StageManifest{kind, R"({"stages": {")" + kind +
+                                       R"(": {}}, "files": [{"name": "preview.png"}, {"name": ")" + kind +
+                                       R"(.npy"}], "timings_s": {"write": 1}})"};
+    };
+    const Json whole = Json::parse(make_bake_manifest("id", "{}", {part("a"), part("b"), part("c")}));
+    EXPECT_EQ(whole["stages"], Json::parse(R"({"a": {}, "b": {}, "c": {}})"));
+    EXPECT_EQ(whole["files"].size(), 6u);
+    EXPECT_EQ(whole["files"][4]["name"], "preview_c.png");
+    EXPECT_EQ(whole["timings_s"]["write"], 3);
+}
+
 TEST(BakeManifest, OfOneStageIsThatStages) {
-    const Json whole = Json::parse(make_bake_manifest("id", "{}", transmittance, ""));
+    const Json whole = Json::parse(make_bake_manifest("id", "{}", {{"transmittance", transmittance}}));
     EXPECT_FALSE(whole.contains("irradiance"));
     EXPECT_EQ(whole["stages"], Json::parse(R"({"transmittance": {"key": "k"}})"));
 }

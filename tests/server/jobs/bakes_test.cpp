@@ -4,6 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "server/jobs/queue.h"
+#include "server/store/blob_store.h"
+#include "server/store/database.h"
 #include "tests/support/temporary_folder.h"
 
 namespace hairbake {
@@ -11,7 +14,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Bakes of which nothing runs.
+/// Bakes without workers.
 class BakesTest : public ::testing::Test {
 protected:
     /// A bake of a model, asked for by names: JSON as in BakePlan.
@@ -21,11 +24,11 @@ protected:
         plan.request = "{}";
         plan.names = names;
         plan.hair = model;
-        plan.transmittance = StagePlan{"transmittance", "stage of " + id, "core", "{}", {}};
+        plan.stages = {{"first", "stage of " + id, "core", "{}", {}}};
         return plan;
     }
 
-    /// All pages of a list one after the other, a bake each.
+    /// Reads a list page by page, one bake a page.
     std::vector<std::string> ids(BakeFilter filter) {
         std::vector<std::string> found;
         filter.limit = 1;
@@ -52,7 +55,7 @@ TEST_F(BakesTest, ABatchListsItsBakesOnceAndNewestFirst) {
     EXPECT_EQ(ids({.batch = "batch"}), (Ids{"d", "b", "a"}));
     EXPECT_EQ(ids({.model = "one", .batch = "batch"}), (Ids{"d", "a"}));
     queue.cancel("d");
-    EXPECT_EQ(ids({.state = "queued", .batch = "batch"}), (Ids{"b", "a"}));
+    EXPECT_EQ(ids({.state = JobState::queued, .batch = "batch"}), (Ids{"b", "a"}));
     EXPECT_EQ(ids({.batch = "none"}), Ids{});
 }
 

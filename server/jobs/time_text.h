@@ -1,4 +1,4 @@
-// Small things that all answers share.
+// Times as replies show them.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// What was made of the database, kept while that does not change.
+// A cache of replies that depend on the database alone.
 #pragma once
 
 #include <cstdint>
@@ -7,24 +7,22 @@
 #include <string>
 #include <unordered_map>
 
-#include "server/store/database.h"
-
 namespace hairbake {
 
-/// Thread-safe. Views by the id of what they show: they are polled again and again.
+/// Thread-safe. Views by the id of the object that they show. All belong to one version of the database: a later
+/// version drops them.
 template <class View>
-class KeptViews {
+class ViewCache {
 public:
-    explicit KeptViews(const Database& database) : database_(database) {}
-
-    std::optional<View> find(const std::string& id) {
+    /// `version` is Database::version() now.
+    std::optional<View> find(std::uint64_t version, const std::string& id) {
         const std::lock_guard lock(mutex_);
-        if (version_ != database_.version()) return std::nullopt;
+        if (version_ != version) return std::nullopt;
         const auto found = views_.find(id);
         return found == views_.end() ? std::nullopt : std::optional(found->second);
     }
 
-    /// `version` is the Database::version_read() of the reading that the view was made in.
+    /// `version` is the Database::version_read() of the read() that made the view.
     void keep(std::uint64_t version, const std::string& id, const View& view) {
         const std::lock_guard lock(mutex_);
         if (version < version_) return;
@@ -36,8 +34,7 @@ public:
 private:
     static constexpr std::size_t most_views = 1000;
 
-    const Database& database_;
-    std::mutex mutex_;  ///< of what follows
+    std::mutex mutex_;  ///< guards the members below
     std::uint64_t version_ = 0;
     std::unordered_map<std::string, View> views_;
 };

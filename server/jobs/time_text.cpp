@@ -1,4 +1,4 @@
-#include "server/jobs/words.h"
+#include "server/jobs/time_text.h"
 
 #include <cmath>
 #include <cstdio>

@@ -1,4 +1,4 @@
-#include "server/http/rim.h"
+#include "server/http/http_server.h"
 
 #define CPPHTTPLIB_USE_POLL
 #define CPPHTTPLIB_LISTEN_BACKLOG 1024
@@ -26,14 +26,14 @@ namespace {
 using namespace std::chrono_literals;
 constexpr Connection::Patience patience{.first_byte = 10s, .read = 30s, .write = 60s};
 constexpr std::chrono::milliseconds lingering = 1s, lingering_refused = 20ms;
-/// Of a body that nginx has whole with its first read (proxy_buffer_size), so that it need not look for more to keep.
+/// A body of up to this size is in nginx's first read (proxy_buffer_size), so nginx need not buffer it.
 constexpr std::size_t one_read = 6144;
-const std::string any_path = "/";  // the library routes nothing: every request is made to look for this
+const std::string any_path = "/";  // every request gets this path in the library; the routing is ours
 
-/// The current connection's request was not read to its end.
+/// Whether the current connection's request was not read to its end.
 thread_local bool body_left = false;
 
-/// A connection as the library wants it.
+/// Adapts a connection to the library.
 class ConnectionStream : public httplib::Stream {
 public:
     explicit ConnectionStream(Connection& connection) : connection_(connection) {}
@@ -42,7 +42,7 @@ public:
     bool is_writable() const override { return connection_.await_writable(); }
     ssize_t read(char* data, std::size_t size) override { return connection_.read(data, size); }
     ssize_t write(const char* data, std::size_t size) override { return connection_.write(data, size); }
-    void get_remote_ip_and_port(std::string&, int&) const override {}  // nobody asks
+    void get_remote_ip_and_port(std::string&, int&) const override {}  // not used
     void get_local_ip_and_port(std::string&, int&) const override {}
     socket_t socket() const override { return connection_.socket(); }
 
@@ -50,16 +50,16 @@ private:
     Connection& connection_;
 };
 
-/// What is done for a connection ends no thread, and so not the daemon.
+/// Calls `answer`; drops the connection when it throws, so that no exception ends a thread.
 void or_drop(const std::function<void()>& answer) {
     try {
         answer();
-    } catch (const std::exception& error) {  // memory ran out where the library does not look for it
+    } catch (const std::exception& error) {  // out of memory where the library does not catch it
         spdlog::error("a connection was dropped: {}", error.what());
     }
 }
 
-/// Waits for nobody: many wait for the one thread that refuses.
+/// Never waits for the client: one thread refuses all connections.
 void refuse_connection(int accepted) {
     Connection connection(accepted, {.first_byte = 0s, .read = 0s, .write = 0s});
     HttpReply busy = problem(503, "busy", "too many requests are waiting");
@@ -73,7 +73,7 @@ void refuse_connection(int accepted) {
 
 bool is_chunked(const httplib::Request& request) { return request.has_header("Transfer-Encoding"); }
 
-/// What is wrong with the head of a request, as a reply.
+/// The reply to a request with a malformed head. Nothing when the head is well-formed.
 std::optional<HttpReply> wrong_head(const httplib::Request& request, const std::optional<Target>& target) {
     const auto refuse = [](const std::string& words) { return problem(400, "malformed", words); };
     for (const auto& [name, value] : request.headers)
@@ -90,16 +90,16 @@ std::optional<HttpReply> wrong_head(const httplib::Request& request, const std::
     if (body && request.method != "POST" && request.method != "PUT" && request.method != "PATCH")
         return refuse("a " + request.method + " has no body here");
     if (request.get_header_value_count("Host") != 1 && request.version == "HTTP/1.1")
-        return refuse("there is not exactly one Host header");
+        return refuse("the request needs exactly one Host header");
     if (request.has_header("Content-Encoding") && request.get_header_value("Content-Encoding") != "identity")
-        return problem(415, "unsupported", "bodies are not taken compressed", "Content-Encoding");
+        return problem(415, "unsupported", "compressed bodies are not accepted", "Content-Encoding");
     if (request.get_header_value("Content-Type").starts_with("multipart/"))
         return problem(415, "unsupported", "a body is one file or one JSON object", "Content-Type");
     if (!target) return refuse("the address is not a plain path");
     return std::nullopt;
 }
 
-/// Feeds the body to `receiver`. The library only learns whether to go on.
+/// Feeds the body to `receiver`. An exception of the receiver is carried past the library.
 void read_body(const httplib::ContentReader& reader, const std::function<void(std::span<const std::byte>)>& receiver) {
     std::exception_ptr failure;
     const bool whole = reader([&](const char* data, std::size_t size) {
@@ -145,7 +145,7 @@ void send_file(httplib::Response& to, const FileBody& file, const std::string& t
                             });
 }
 
-/// Names the file instead of sending it: nginx sends it, or the range of it that was asked for, with the reply's
+/// Names the file in X-Accel-Redirect instead of sending it: nginx sends it, or the requested range, with the reply's
 /// headers.
 void leave_to_nginx(HttpReply& reply, const std::string& accel) {
     reply.status = 200;
@@ -156,8 +156,8 @@ void leave_to_nginx(HttpReply& reply, const std::string& accel) {
     reply.file.reset();
 }
 
-/// Whether nginx compresses it (gzip_min_length): a part at a time unless it may keep the whole.
-bool is_packed(const HttpRequest& request, const HttpReply& reply) {
+/// Whether nginx compresses the reply (gzip_min_length). It needs its buffer then.
+bool is_compressed(const HttpRequest& request, const HttpReply& reply) {
     return reply.body.size() >= 1000 &&
            request.header("Accept-Encoding").value_or("").find("gzip") != std::string::npos;
 }
@@ -172,27 +172,27 @@ void fill(httplib::Response& to, HttpReply reply) {
         to.set_content(std::move(reply.body), reply.type);
 }
 
-/// A daemon that was killed leaves its socket behind. One that somebody listens on is not ours to take, nor is a file
-/// that is no socket.
+/// Removes the socket of a killed daemon.
+/// Throws Error(usage) when a process listens on the socket, and when the file is no socket.
 void remove_dead_socket(const std::string& path) {
     struct stat facts {};
     if (::lstat(path.c_str(), &facts) != 0) return;
-    if (!S_ISSOCK(facts.st_mode)) throw Error(ErrorKind::usage, path + " is there and is no socket");
+    if (!S_ISSOCK(facts.st_mode)) throw Error(ErrorKind::usage, path + " exists and is no socket");
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
     path.copy(address.sun_path, sizeof address.sun_path - 1);
     const int probe = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
     const bool lives = ::connect(probe, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
     ::close(probe);
-    if (lives) throw Error(ErrorKind::usage, "somebody listens on the socket " + path + " already");
+    if (lives) throw Error(ErrorKind::usage, "another process listens on the socket " + path);
     ::unlink(path.c_str());
 }
 
 }  // namespace
 
-class Rim::Listener : public httplib::Server {
+class HttpServer::Listener : public httplib::Server {
 public:
-    Listener(const RimSettings& settings, Rim::Handler handler)
+    Listener(const HttpServerSettings& settings, HttpServer::Handler handler)
         : handler_(std::move(handler)),
           accel_(settings.accel),
           address_(bind(settings)),
@@ -201,7 +201,24 @@ public:
               listening_.get(), settings.threads, settings.waiting,
               [this](int accepted) { or_drop([&] { serve_connection(accepted); }); },
               [](int accepted) { or_drop([&] { refuse_connection(accepted); }); }) {
-        set_payload_max_length(std::numeric_limits<std::size_t>::max());  // routes count for themselves
+        set_payload_max_length(std::numeric_limits<std::size_t>::max());  // the router limits bodies
+        set_expect_100_continue_handler([](const httplib::Request&, httplib::Response&) { return 100; });
+        handle_requests();
+        handle_failures();
+    }
+
+    const std::string& address() const { return address_; }
+
+    void serve() { threads_.run(); }
+
+    void stop() {
+        svr_sock_ = INVALID_SOCKET;  // the library reads it to see whether to continue a long body
+        threads_.stop();
+    }
+
+private:
+    /// Requests without a body are answered before the library's routing, the others when their body can be read.
+    void handle_requests() {
         set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
             body_left = request.has_header("Content-Length") || is_chunked(request);
             std::optional<Target> target = read_target(request.target);
@@ -210,7 +227,7 @@ public:
             else if (request.method == "GET" || request.method == "HEAD" || request.method == "OPTIONS")
                 answer(request, std::move(*target), nullptr, response);
             else
-                return HandlerResponse::Unhandled;  // those below have a body that is read
+                return HandlerResponse::Unhandled;
             return HandlerResponse::Handled;
         });
         const auto with_body = [this](const httplib::Request& request, httplib::Response& response,
@@ -218,6 +235,10 @@ public:
             answer(request, *read_target(request.target), &reader, response);
         };
         Post(any_path, with_body).Put(any_path, with_body).Patch(any_path, with_body).Delete(any_path, with_body);
+    }
+
+    /// Exceptions, and errors that the library answers by itself, become problem+json.
+    void handle_failures() {
         set_exception_handler(
             [](const httplib::Request&, httplib::Response& response, const std::exception_ptr& failure) {
                 try {
@@ -233,26 +254,14 @@ public:
         set_post_routing_handler([](const httplib::Request&, httplib::Response& response) {
             if (response.status == 204 || response.status == 304) response.headers.erase("Content-Length");
             if (response.body.empty() || response.has_header("Content-Length")) return;
-            response.set_header("Content-Length",
-                                std::to_string(response.body.size()));  // errors of the library itself
+            response.set_header("Content-Length", std::to_string(response.body.size()));  // the library's own errors
         });
-        set_expect_100_continue_handler([](const httplib::Request&, httplib::Response&) { return 100; });
     }
 
-    const std::string& address() const { return address_; }
-
-    void serve() { threads_.run(); }
-
-    void stop() {
-        svr_sock_ = INVALID_SOCKET;  // as the library asks whether to go on with a long body
-        threads_.stop();
-    }
-
-private:
-    /// Gives the address.
-    std::string bind(const RimSettings& settings) {
+    /// Returns the address.
+    std::string bind(const HttpServerSettings& settings) {
         set_tcp_nodelay(true);
-        // Not SO_REUSEPORT, with which two daemons would share a port.
+        // Not SO_REUSEPORT: two daemons could share a port.
         set_socket_options([](socket_t listening) {
             const int yes = 1;
             ::setsockopt(listening, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -283,7 +292,7 @@ private:
         if (is_forwarded(request)) {
             if (reply.file && !accel_.empty())
                 leave_to_nginx(reply, accel_);
-            else if (!reply.file && reply.body.size() <= one_read && !is_packed(request, reply))
+            else if (!reply.file && reply.body.size() <= one_read && !is_compressed(request, reply))
                 reply.with("X-Accel-Buffering", "no");
         }
         fill(to, std::move(reply));
@@ -292,7 +301,7 @@ private:
     void serve_connection(int accepted) {
         Connection connection(accepted, patience);
         if (!connection.await_request([this] { return svr_sock_ != INVALID_SOCKET; })) return;
-        body_left = true;  // until the head is understood
+        body_left = true;  // until the head is parsed
         serve_request(connection);
         connection.flush();
         if (body_left) connection.linger(lingering);
@@ -302,24 +311,24 @@ private:
         ConnectionStream stream(connection);
         bool closed = false;
         process_request(stream, "", 0, "", 0, true, closed, [](httplib::Request& request) {
-            request.path = any_path;  // ours are in the target
-            request.ranges.clear();   // likewise
+            request.path = any_path;  // the real path is in the target
+            request.ranges.clear();   // we parse Range ourselves
         });
     }
 
-    Rim::Handler handler_;
+    HttpServer::Handler handler_;
     const std::string accel_;
     const std::string address_;
     const Descriptor listening_;
     ConnectionThreads threads_;
 };
 
-Rim::Rim(const RimSettings& settings, Handler handler)
+HttpServer::HttpServer(const HttpServerSettings& settings, Handler handler)
     : listener_(std::make_unique<Listener>(settings, std::move(handler))) {}
-Rim::~Rim() = default;
+HttpServer::~HttpServer() = default;
 
-std::string Rim::address() const { return listener_->address(); }
-void Rim::serve() { listener_->serve(); }
-void Rim::stop() { listener_->stop(); }
+std::string HttpServer::address() const { return listener_->address(); }
+void HttpServer::serve() { listener_->serve(); }
+void HttpServer::stop() { listener_->stop(); }
 
 }  // namespace hairbake

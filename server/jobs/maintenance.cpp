@@ -1,0 +1,47 @@
+#include "server/jobs/maintenance.h"
+
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+
+#include "server/jobs/uploads.h"
+#include "server/store/blob_store.h"
+#include "server/store/eviction.h"
+#include "server/store/pruning.h"
+
+namespace hairbake {
+
+Maintenance::Maintenance(Database& database, BlobStore& store, Uploads& uploads, const MaintenanceSettings& settings)
+    : database_(database), store_(store), uploads_(uploads), settings_(settings) {
+    prune_bakes();
+    thread_ = std::jthread([this] { run(); });
+}
+
+Maintenance::~Maintenance() { stop(); }
+
+void Maintenance::stop() {
+    {
+        const std::lock_guard lock(mutex_);
+        is_stopping_ = true;
+    }
+    changed_.notify_all();
+}
+
+void Maintenance::prune_bakes() { prune(database_, now() - settings_.keep_failed_s); }
+
+void Maintenance::run() {
+    for (;;) try {
+            {
+                std::unique_lock lock(mutex_);
+                if (changed_.wait_for(lock, std::chrono::minutes(1), [this] { return is_stopping_; })) return;
+            }
+            store_.flush_uses();
+            uploads_.expire();
+            prune_bakes();
+            evict(database_, store_, settings_.budget);
+        } catch (const std::exception& error) {
+            spdlog::error("maintenance: {}", error.what());
+        }
+}
+
+}  // namespace hairbake

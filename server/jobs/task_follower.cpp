@@ -1,0 +1,68 @@
+#include "server/jobs/task_follower.h"
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+namespace hairbake {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using End = Outcome::End;
+using State = RunStatus::State;
+
+/// A short task is asked about often, a long one every 25 ms.
+void sleep_until_next_poll(Clock::duration running) {
+    using namespace std::chrono_literals;
+    std::this_thread::sleep_for(std::clamp<Clock::duration>(running / 16, 1ms, 25ms));
+}
+
+Outcome outcome_of(const LastWord& word) {
+    if (!word.error) return {End::done, word.facts, {}, {}, {}};
+    const End end = *word.error == ErrorKind::cancelled ? End::cancelled : End::failed;
+    return {end, word.facts, *word.error, word.message, word.field};
+}
+
+/// `was_stopped`: on the caller's wish.
+Outcome conclude(const RunStatus& status, const WorkerWords& words, bool was_stopped) {
+    if (status.state == State::exited && words.last_word() && !words.is_babbling())
+        return outcome_of(*words.last_word());
+    if (was_stopped) return {End::cancelled, "{}", ErrorKind::cancelled, {}, {}};
+    if (words.is_babbling())
+        return {End::died,
+                "{}",
+                ErrorKind::internal,
+                "the worker wrote a line of more than 1 MiB or more than 64 MiB of words",
+                {}};
+    if (status.state == State::over_limit) return {End::failed, "{}", ErrorKind::out_of_resources, status.message, {}};
+    const std::string without = status.state == State::exited ? " without a result" : "";
+    return {End::died, "{}", ErrorKind::internal, status.message + without, {}};
+}
+
+}  // namespace
+
+Outcome follow_task(Runner& runner, const std::string& handle, const WorkFolder& folder,
+                    const std::function<Wish()>& wish, const WorkerWords::OnProgress& on_progress) {
+    const Clock::time_point begin = Clock::now();
+    WorkerWords words(folder.words(), on_progress);
+    bool was_stopped = false;
+    for (;;) {
+        const Wish wanted = wish();
+        if (wanted == Wish::leave) return {End::left, "{}", {}, {}, {}};
+        if (wanted == Wish::stop && !was_stopped) {
+            was_stopped = true;
+            runner.stop(handle);
+        }
+        const RunStatus status = runner.poll(handle);  // before the words: the last one is written before the end
+        const bool more = words.read_more();
+        if (status.state != State::running) {
+            while (words.read_more()) {
+            }
+            return conclude(status, words, was_stopped);
+        }
+        if (words.is_babbling()) runner.stop(handle);
+        if (!more) sleep_until_next_poll(Clock::now() - begin);
+    }
+}
+
+}  // namespace hairbake

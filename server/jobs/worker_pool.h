@@ -1,0 +1,55 @@
+// The worker pool: threads that take stages from the queue, have them run, and store their results.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "server/jobs/bake_records.h"
+
+namespace hairbake {
+
+class BlobStore;
+class Database;
+class Queue;
+class Runner;
+class WorkFolder;
+struct ClaimedStage;
+struct Outcome;
+
+struct WorkerPoolSettings {
+    std::string runner;        ///< name of the runner, stored with its handles
+    std::uint64_t budget = 0;  ///< of the store, in bytes
+    int workers = 1;           ///< at once
+    int threads = 1;           ///< of each worker
+};
+
+class WorkerPool {
+public:
+    WorkerPool(Queue& queue, Runner& runner, Database& database, BlobStore& store, const WorkerPoolSettings& settings);
+    /// Queue::stop() comes first.
+    ~WorkerPool();
+
+private:
+    void work();
+    void run_to_the_end(const ClaimedStage& stage);
+    void run(const ClaimedStage& stage);
+    Outcome run_worker(const ClaimedStage& stage, WorkFolder& folder);
+    std::string start(const ClaimedStage& stage, const WorkFolder& folder);
+    std::string task_for(const ClaimedStage& stage);
+    void remove_spoiled_inputs(const std::vector<std::string>& digests);
+    std::string checked_manifest(const ClaimedStage& stage, const std::filesystem::path& folder);
+    void store_result(const ClaimedStage& stage, std::unique_ptr<WorkFolder> work);
+
+    Queue& queue_;
+    Runner& runner_;
+    Database& database_;
+    BlobStore& store_;
+    const WorkerPoolSettings settings_;
+    std::vector<std::jthread> threads_;
+};
+
+}  // namespace hairbake

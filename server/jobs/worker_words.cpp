@@ -1,0 +1,67 @@
+#include "server/jobs/worker_words.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error_kind_names.h"
+
+namespace hairbake {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr std::size_t longest_line = 1 << 20, piece_bytes = 64 << 10;
+constexpr std::uint64_t most_bytes = 64 << 20;
+constexpr int pieces_at_once = 64;
+
+/// "" when the member is missing or no text.
+std::string text(const Json& object, const char* name) {
+    const auto found = object.find(name);
+    return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+}  // namespace
+
+WorkerWords::WorkerWords(std::filesystem::path file, OnProgress on_progress)
+    : file_(std::move(file)), on_progress_(std::move(on_progress)) {}
+
+bool WorkerWords::read_more() {
+    if (is_babbling_) return false;
+    if (!descriptor_) descriptor_ = Descriptor(::open(file_.c_str(), O_RDONLY | O_CLOEXEC));
+    if (!descriptor_) return false;
+    std::string piece(piece_bytes, '\0');
+    for (int i = 0; i < pieces_at_once; ++i) {
+        const ssize_t count = ::read(descriptor_.get(), piece.data(), piece.size());
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) return false;
+        total_ += static_cast<std::uint64_t>(count);
+        pending_.append(piece, 0, static_cast<std::size_t>(count));
+        std::size_t begin = 0;
+        for (std::size_t end = 0; (end = pending_.find('\n', begin)) != std::string::npos; begin = end + 1)
+            read_line(pending_.substr(begin, end - begin));
+        pending_.erase(0, begin);
+        is_babbling_ = pending_.size() >= longest_line || total_ > most_bytes;
+        if (is_babbling_) return false;
+    }
+    return true;
+}
+
+void WorkerWords::read_line(const std::string& line) {
+    const Json words = Json::parse(line, nullptr, false);
+    if (!words.is_object()) return;
+    if (words.contains("phase")) {
+        const auto fraction = words.find("fraction");
+        on_progress_(text(words, "phase"),
+                     fraction != words.end() && fraction->is_number() ? fraction->get<double>() : 0);
+    } else if (words.contains("done")) {
+        last_word_ = LastWord{std::nullopt, words["done"].dump(), {}, {}};
+    } else if (words.contains("error") && words["error"].is_object()) {
+        const Json& error = words["error"];
+        last_word_ = LastWord{find_in(error_kind_names, text(error, "kind")).value_or(ErrorKind::internal), "{}",
+                              text(error, "message"), text(error, "field")};
+    }
+}
+
+}  // namespace hairbake
