@@ -27,10 +27,6 @@ constexpr std::size_t most_bakes = 100'000;
 
 constexpr std::array selections{"bakes", "replaces", "name", "models"};
 
-bool is_selection(const std::string& field) {
-    return std::find(selections.begin(), selections.end(), field) != selections.end();
-}
-
 /// Names of all fields that the body may have.
 std::vector<std::string> allowed_fields() {
     std::vector<std::string> fields{"environment", "priority"};
