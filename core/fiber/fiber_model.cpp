@@ -1,17 +1,10 @@
 #include "core/fiber/fiber_model.h"
 
-#include <cstdio>
-
 #include "core/base/error.h"
+#include "core/base/short_number.h"
 
 namespace hairbake {
 namespace {
-
-std::string text(double value) {
-    char buffer[32];
-    std::snprintf(buffer, sizeof buffer, "%.10g", value);
-    return buffer;
-}
 
 /// A NaN is in no range.
 void check_numbers(const FiberSettings& settings) {
@@ -20,7 +13,8 @@ void check_numbers(const FiberSettings& settings) {
         if (number.model != settings.model || (value >= number.low && value <= number.high)) continue;
         const std::string field = path_of(number);
         throw Error(ErrorKind::usage,
-                    field + " is " + text(value) + "; allowed is " + text(number.low) + " to " + text(number.high),
+                    field + " is " + short_number(value) + "; allowed is " + short_number(number.low) + " to " +
+                        short_number(number.high),
                     field);
     }
 }

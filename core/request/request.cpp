@@ -2,20 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/short_number.h"
 #include "core/request/request_presets.h"
 
 namespace hairbake {
 namespace {
-
-std::string text(double value) {
-    char buffer[32];
-    std::snprintf(buffer, sizeof buffer, "%.10g", value);
-    return buffer;
-}
 
 [[noreturn]] void refuse(const std::string& field, const std::string& found, const std::string& allowed) {
     throw Error(ErrorKind::usage, field + " is " + found + "; allowed is " + allowed, field);
@@ -23,11 +17,13 @@ std::string text(double value) {
 
 /// Both ends belong to the range. A NaN is in no range.
 void check_range(const std::string& field, double value, double low, double high) {
-    if (!(value >= low && value <= high)) refuse(field, text(value), text(low) + " to " + text(high));
+    if (!(value >= low && value <= high))
+        refuse(field, short_number(value), short_number(low) + " to " + short_number(high));
 }
 
 void check_positive(const std::string& field, double value, double high) {
-    if (!(value > 0 && value <= high)) refuse(field, text(value), "more than 0 and at most " + text(high));
+    if (!(value > 0 && value <= high))
+        refuse(field, short_number(value), "more than 0 and at most " + short_number(high));
 }
 
 void check_choice(const std::string& field, const std::string& value, const std::vector<std::string>& allowed) {
