@@ -47,7 +47,7 @@ std::string environment_of(const RenderRequest& request, const StoredResult& sto
                         " was baked from is needed for the background, a mesh's light and every mode but baked: give "
                         "the file (--env)",
                     "environment");
-    // A result of hair alone may be lit by anything.
+    // Any environment may light a result of hair alone.
     return !stored.digests.contains("environment") ? *file
                                                    : checked(*file, stored.digests.at("environment"), "environment");
 }

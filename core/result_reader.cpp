@@ -134,7 +134,7 @@ StoredResult read_result(const fs::path& folder) {
         refuse(file, std::string("is not a manifest of hairbake: ") + error.what());
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::usage) throw;
-        refuse(file, std::string("holds a request that cannot be: ") + error.what());
+        refuse(file, std::string("holds a request that is not valid: ") + error.what());
     }
     return result;
 }

@@ -107,7 +107,7 @@ void discard_staging(const fs::path& folder) noexcept {
         fs::rename(staging, gone, error);
         if (!error) fs::remove_all(gone, error);
     } catch (const std::exception&) {
-        // Nothing more can be done by a process that ends.
+        // A process that ends can do nothing more.
     }
 }
 

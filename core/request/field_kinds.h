@@ -148,7 +148,7 @@ inline Field moved(Field field, std::string first_path) {
     return field;
 }
 
-/// A field that came after the first version, which did what `first_value` says.
+/// A field that the first version did not have. Its behaviour was that of `first_value`.
 inline Field added(Field field, Json first_value) {
     field.first_value = std::move(first_value);
     return field;

@@ -120,7 +120,7 @@ void check_outputs(const BakeRequest& request) {
         check_choice("outputs", *output, output_formats());
         if (std::find(outputs.begin(), output, *output) != output) refuse("outputs", *output + " twice", "each once");
     }
-    // Known before the bake, so said before it.
+    // This is known before the bake, so it is refused here.
     if (request.hair && request.wants("vdb") && request.transmittance.method != TransmittanceMethod::volume)
         refuse("outputs", "vdb with a transmittance.method that has no density grid", "vdb with the method volume");
 }

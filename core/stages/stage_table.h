@@ -1,4 +1,4 @@
-// The code of each stage. core/request/stages.h says what a stage is and reads; this is the table of what it does.
+// The code of each stage. core/request/stages.h describes the stages; the table here has their functions.
 #pragma once
 
 #include "core/request/request.h"
@@ -8,7 +8,7 @@
 
 namespace hairbake {
 
-/// What a stage works with.
+/// The input of a stage.
 struct StageContext {
     const BakeRequest& request;
     BakeInputs& inputs;  ///< holds what the stage's row names as inputs

@@ -8,9 +8,9 @@
 
 namespace hairbake {
 
-/// q(d) = (1 - d^2 / r^2)^2 for d < r. Offset (i, j, k) from the vertex's voxel has the index
-/// o = 9 (i + 1) + 3 (j + 1) + (k + 1). weight[o] is the integral of q(d) / d^2 over voxel o, averaged over the
-/// vertex's place in its voxel; for the vertex's own voxel times pi / 4, the mean sine. Arrays are padded with zeros.
+/// q(d) = (1 - d^2 / r^2)^2 for d < r. Offset (i, j, k) from the vertex's voxel has the index o = 9 (i + 1) + 3 (j + 1)
+/// + (k + 1). weight[o] is the integral of q(d) / d^2 over voxel o, averaged over the vertex's place in its voxel. The
+/// weight of the vertex's own voxel is multiplied by pi / 4, the mean sine. Arrays are padded with zeros.
 struct NearFieldWindow {
     /// r in voxels. With half a voxel only the adjacent cells of half a voxel matter.
     static constexpr float radius = 0.5f;

@@ -1,5 +1,4 @@
-// A functional of the transmittance, for the sweep: how many sums it keeps at a point, and how it adds to
-// them.
+// A functional of the transmittance, for the sweep: how many sums it keeps at a point, and how it adds to them.
 #pragma once
 
 #include <array>
