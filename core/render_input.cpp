@@ -16,7 +16,7 @@ namespace hairbake {
 namespace fs = std::filesystem;
 namespace {
 
-/// The file, once its digest is that of the file that was baked.
+/// Returns `file` when its digest is that of the file that was baked.
 std::string checked(const std::string& file, const std::string& digest, const std::string& what) {
     const std::string found = what == "environment" ? digest_of_environment(file) : digest_of_file(file);
     if (found != digest)

@@ -66,7 +66,7 @@ void expect_shape(const fs::path& file, const std::vector<std::size_t>& found,
 }
 
 void read_arrays(const ResultFiles& files, StoredResult& result) {
-    std::map<ArrayOwner, std::size_t> rows;  // all arrays of an owner have as many
+    std::map<ArrayOwner, std::size_t> rows;  // the same for all arrays of an owner
     for (const ArrayKind& kind : array_kinds()) {
         const std::string name = std::string(kind.name) + ".npy";
         NpyArray read = files.array(name);

@@ -134,7 +134,7 @@ Field choice(std::string path, Names<Enum> names, At at) {
             }};
 }
 
-/// By the enum's own table of names.
+/// A choice by the enum's own table of names.
 template <class Enum, std::size_t count, class At>
 Field choice(std::string path, const std::array<EnumName<Enum>, count>& table, At at) {
     Names<Enum> names;

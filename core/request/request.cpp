@@ -82,7 +82,7 @@ void check_environment(const EnvironmentSettings& settings) {
     for (const double factor : settings.tint) check_range("environment_settings.tint", factor, 0, 1e6);
 }
 
-/// Of the chosen model alone.
+/// Checks the parameters of the chosen model alone.
 void check_fiber(const FiberSettings& settings) {
     for (const FiberNumber& number : fiber_numbers)
         if (number.model == settings.model) check_range(path_of(number), number.of(settings), number.low, number.high);

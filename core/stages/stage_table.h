@@ -15,7 +15,7 @@ struct StageContext {
     PhaseClock& clock;
 };
 
-/// Reads the stage's inputs and runs it.
+/// Reads the inputs of the stage and runs the stage.
 /// Throws Error as bake().
 StagePart run_stage(const Stage& stage, StageContext& context);
 

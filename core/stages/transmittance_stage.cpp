@@ -12,7 +12,7 @@
 namespace hairbake {
 namespace {
 
-/// By tracing the true strands.
+/// Transmittance by tracing the true strands.
 Transmittance trace_all(const StrandScene& scene, const TransmittanceScene& baked,
                         const TransmittanceSettings& settings, Progress& progress) {
     std::vector<std::uint32_t> vertices(scene.strands().vertex_count());

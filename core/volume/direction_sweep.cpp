@@ -131,7 +131,7 @@ void sweep_group(const Axis& axis, std::span<const Vec3d> directions, const Dire
     sweep(axis.layout, directions, group, stops, worker.sweep);
 }
 
-/// Sweeps all groups of one axis and adds what they bring to `sums`. Calls swept(n) after every n directions.
+/// Sweeps all groups of one axis and adds their sums to `sums`. Calls swept(n) after every n directions.
 void sweep_axis(const Axis& axis, std::span<const Vec3d> directions, std::span<const DirectionGroup> groups,
                 std::size_t walks, const Progress& progress, const std::function<void(std::size_t)>& swept,
                 std::vector<FixedPointSums>& sums) {
