@@ -25,7 +25,7 @@ struct NearFieldInput {
     const HairVolume& volume;
     const NearFieldWindow& window;
     std::span<const std::vector<AngularMean>> means;
-    float own_unit;  ///< exponent for one side of the own strand, over opacity * width
+    float own_unit;  ///< exponent for one side of the own strand, divided by opacity * width
 };
 
 }  // namespace hairbake
