@@ -29,8 +29,10 @@ BakeResult bake(const BakeRequest& request, int threads, BakeProgress& progress)
 
 /// Writes the request's outputs, environment_sh.json, preview.png and manifest.json to `folder`, which appears whole or
 /// not at all. Completes result.measured and result.warnings.
-/// Throws Error(usage) when `folder` holds other files than an earlier result's, Error(bad_input) when the place cannot
-/// be written, Error(out_of_resources) when the disk is full, Error(cancelled).
+/// Throws Error(usage) when `folder` holds other files than those of an earlier result.
+/// Throws Error(bad_input) when the place cannot be written.
+/// Throws Error(out_of_resources) when the disk is full.
+/// Throws Error(cancelled).
 void write_result(BakeResult& result, const std::filesystem::path& folder, BakeProgress& progress);
 
 }  // namespace hairbake

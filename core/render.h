@@ -22,8 +22,10 @@ struct RenderedPicture {
 };
 
 /// Validates, reads, bakes where needed and renders on `threads` threads (0: one per core). Reports the phases of
-/// bake() and "render". Throws Error: usage naming the field, bad_input naming the file (also when a given file is not
-/// the one that the result was baked from), out_of_resources, cancelled.
+/// bake() and "render".
+/// Throws Error(usage) naming the field.
+/// Throws Error(bad_input) naming the file, also when a given file is not the one that the result was baked from.
+/// Throws Error(out_of_resources), Error(cancelled).
 RenderedPicture render(const RenderRequest& request, int threads, BakeProgress& progress);
 
 /// Stops that bring the brighter tenth of the pixels that are not black to a bright but unclipped tone (output/tone.h);

@@ -16,7 +16,7 @@ namespace hairbake {
 namespace fs = std::filesystem;
 namespace {
 
-/// The file, once its digest is that of the file that was baked.
+/// Returns `file` when its digest is that of the file that was baked.
 std::string checked(const std::string& file, const std::string& digest, const std::string& what) {
     const std::string found = what == "environment" ? digest_of_environment(file) : digest_of_file(file);
     if (found != digest)
@@ -47,7 +47,7 @@ std::string environment_of(const RenderRequest& request, const StoredResult& sto
                         " was baked from is needed for the background, a mesh's light and every mode but baked: give "
                         "the file (--env)",
                     "environment");
-    // A result of hair alone may be lit by anything.
+    // Any environment may light a result of hair alone.
     return !stored.digests.contains("environment") ? *file
                                                    : checked(*file, stored.digests.at("environment"), "environment");
 }

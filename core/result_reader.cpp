@@ -66,7 +66,7 @@ void expect_shape(const fs::path& file, const std::vector<std::size_t>& found,
 }
 
 void read_arrays(const ResultFiles& files, StoredResult& result) {
-    std::map<ArrayOwner, std::size_t> rows;  // all arrays of an owner have as many
+    std::map<ArrayOwner, std::size_t> rows;  // the same for all arrays of an owner
     for (const ArrayKind& kind : array_kinds()) {
         const std::string name = std::string(kind.name) + ".npy";
         NpyArray read = files.array(name);
@@ -134,7 +134,7 @@ StoredResult read_result(const fs::path& folder) {
         refuse(file, std::string("is not a manifest of hairbake: ") + error.what());
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::usage) throw;
-        refuse(file, std::string("holds a request that cannot be: ") + error.what());
+        refuse(file, std::string("holds a request that is not valid: ") + error.what());
     }
     return result;
 }

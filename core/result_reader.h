@@ -12,7 +12,7 @@
 
 namespace hairbake {
 
-/// What the .npy files of a result hold, and what they were baked from.
+/// The contents of the .npy files of a result, and the request and inputs that they were baked from.
 struct StoredResult {
     BakeRequest request;              ///< as it was run
     InputDigests digests;             ///< of the inputs
@@ -21,7 +21,7 @@ struct StoredResult {
     std::optional<MapSet> maps;       ///< without statistics
 };
 
-/// Trusts nothing: every file is the one whose SHA-256 the manifest gives, shapes fit each other, values are finite and
+/// Every file is checked: it has the SHA-256 that the manifest gives, shapes fit each other, values are finite and
 /// shares are 0 to 1.
 /// Throws Error(bad_input) naming the file, what was found and what is allowed.
 StoredResult read_result(const std::filesystem::path& folder);

@@ -1,4 +1,5 @@
-// Preconditions that a function's comment promises, checked in builds with HAIRBAKE_ASSERTS (tests, sanitizers, fuzzing).
+// Preconditions that a function's comment promises, checked in builds with HAIRBAKE_ASSERTS (tests, sanitizers,
+// fuzzing).
 #pragma once
 
 #include <cstdio>

@@ -1,4 +1,4 @@
-// Whether a file is still the same between two readings of it.
+// Tells whether a file changed between two readings of it.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@ namespace hairbake {
 /// nobody wrote to the file in between.
 using FileIdentity = std::array<std::int64_t, 5>;
 
-/// Empty where the file cannot be looked at. Thread-safe.
+/// Empty where the system gives no facts of the file. Thread-safe.
 std::optional<FileIdentity> identity_of(const std::filesystem::path& file);
 
 }  // namespace hairbake

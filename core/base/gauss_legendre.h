@@ -10,8 +10,8 @@ struct Quadrature {
     std::vector<double> nodes, weights;
 };
 
-/// Returns `count` >= 1 nodes. Newton's method on the Legendre polynomial (Press et al., Numerical Recipes, section 4.6);
-/// accurate to about 1e-15 for counts up to some thousands. Thread-safe.
+/// Returns `count` >= 1 nodes. Newton's method on the Legendre polynomial (Press et al., Numerical Recipes, section
+/// 4.6); accurate to about 1e-15 for counts up to some thousands. Thread-safe.
 Quadrature gauss_legendre(int count);
 
 }  // namespace hairbake

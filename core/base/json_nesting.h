@@ -11,8 +11,8 @@ namespace hairbake {
 /// For requests and manifests. hairbake itself writes fewer than ten levels.
 inline constexpr int deepest_json = 64;
 
-/// Whether lists and objects are nested more than `levels` deep. Brackets in strings do not count. Text that is not JSON
-/// is judged by its brackets too.
+/// Whether lists and objects are nested more than `levels` deep. Brackets in strings do not count. Text that is not
+/// JSON is judged by its brackets too.
 inline bool nested_deeper_than(std::string_view json, int levels) {
     int depth = 0;
     bool in_string = false;
@@ -30,7 +30,8 @@ inline bool nested_deeper_than(std::string_view json, int levels) {
     return false;
 }
 
-/// Throws Error(kind) whose message begins with `source`, for JSON of more than deepest_json levels.
+/// `source` names the text in messages.
+/// Throws Error(kind) for JSON of more than deepest_json levels; its message begins with `source`.
 inline void check_nesting(std::string_view json, const std::string& source, ErrorKind kind,
                           const std::string& field = {}) {
     if (nested_deeper_than(json, deepest_json))

@@ -1,4 +1,4 @@
-// The only way hairbake uses threads (TBB behind it).
+// Parallel loops. hairbake uses threads in no other way; TBB runs them.
 #pragma once
 
 #include <cstddef>

@@ -19,10 +19,11 @@ public:
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    /// `fraction` in [0, 1] of the work of this object. May be called often: the receiver thins out. Default: silent.
+    /// `fraction` in [0, 1] of the work of this object. May be called often: the receiver passes on only some of the
+    /// reports. Default: silent.
     virtual void report(double /*fraction*/) {}
 
-    /// Asks the work to stop. Safe in a signal handler. Only on the object that the outermost caller made.
+    /// Asks the work to stop. Safe in a signal handler. Call it only on the object that the outermost caller made.
     void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
     virtual bool cancelled() const noexcept { return cancelled_.load(std::memory_order_relaxed); }
 
@@ -53,8 +54,8 @@ private:
 
 inline ProgressPart Progress::part(double from, double to) { return {*this, from, to}; }
 
-/// What the facade (bake, write_result, render) is given: it names the phase that begins. report() then tells the
-/// fraction of that phase. core/request/stages.h has the names of the phases and their shares of the whole.
+/// The progress that the facade (bake, write_result, render) takes. enter() names the phase that begins. report() then
+/// gives the fraction of that phase. core/request/stages.h has the names of the phases and their shares of the whole.
 class BakeProgress : public Progress {
 public:
     /// Called by one thread at a time, before the first report of the phase. Default: silent.

@@ -1,4 +1,4 @@
-// How the six faces of a cube lie in one picture. In every layout each face is stored as cube_map.h says; nothing is
+// Layouts of the six faces of a cube in one picture. In every layout each face is stored as cube_map.h says; nothing is
 // mirrored. Pixels of a cross outside its faces are ignored.
 //
 //   horizontal_cross, 4:3      vertical_cross, 3:4      horizontal_strip, 6:1         vertical_strip, 1:6
@@ -41,20 +41,20 @@ struct PicturePixel {
     int x = 0, y = 0;
 };
 
-/// Where the faces are in one of the four layouts above; null for every other layout.
+/// Places of the faces in one of the four layouts above; null for every other layout.
 const CubeLayout* find_cube_layout(EnvironmentLayout layout);
 
-/// Lat-long or the cube layout that a picture of this shape has; empty for the shape of no layout. No two layouts have
-/// the same shape.
+/// The layout (lat-long, or one of a cube) that pictures of this shape have; empty where no layout has the shape. No
+/// two layouts have the same shape.
 std::optional<EnvironmentLayout> layout_of_shape(int width, int height);
 
 /// "2:1 (latlong), 4:3 (horizontal_cross), ..." for error messages.
 std::string known_shapes();
 
-/// Where the picture keeps a texel of the cube, for faces of `size` texels.
+/// The pixel of the picture that holds a texel of the cube, for faces of `size` texels.
 PicturePixel pixel_of_texel(const CubeLayout& layout, int size, int face, int row, int column);
 
-/// The cube in a picture of layout.columns * size by layout.rows * size pixels; `pixels` has just as many.
+/// The cube in a picture of layout.columns * size by layout.rows * size pixels; `pixels` holds exactly that many.
 CubeTexels take_cube(const CubeLayout& layout, int size, std::span<const Vec3f> pixels);
 
 }  // namespace hairbake

@@ -1,9 +1,9 @@
 // Cube maps: faces, texels, exact solid angles and look-up.
 //
-// The faces are in the order +X -X +Y -Y +Z -Z, with the orientation of OpenGL, Direct3D and KTX. The drawing shows them
-// unfolded around +Z, as stored: +a of each face is to the right, +b is down, and the letters name the world axes along
-// which a and b grow. Cube maps of the graphics interfaces are left-handed: in this right-handed frame the drawing is the
-// view from outside.
+// The faces are in the order +X -X +Y -Y +Z -Z, with the orientation of OpenGL, Direct3D and KTX. The drawing shows
+// them unfolded around +Z, as stored: +a of each face is to the right, +b is down. The letters name the world axes
+// along which a and b grow. Cube maps of the graphics interfaces are left-handed: in this right-handed frame the
+// drawing is the view from outside.
 //
 //                 +----------+
 //                 |    +Y    |
@@ -51,8 +51,8 @@ inline std::size_t cube_texel_index(int size, int face, int row, int column) {
 /// The table above: the direction of a point before normalising, on the cube of edge 2. Linear in a and b.
 Vec3d cube_vector(CubePoint point);
 
-/// Unit direction of a point, and the point of a direction of any length but 0. On an edge the first axis of x, y, z
-/// decides the face.
+/// Unit direction of a point, and the point of a direction of any length but 0. On an edge the largest axes tie: the
+/// first of them in the order x, y, z decides the face.
 Vec3d cube_direction(CubePoint point);
 CubePoint cube_point(const Vec3d& direction);
 

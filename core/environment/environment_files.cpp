@@ -60,7 +60,7 @@ std::string looked_for() {
 
 std::string describe(const Set& set) { return '"' + set.before + std::string(placeholder) + set.after + '"'; }
 
-// What is there and what is not, of one set.
+// The files that one set has and those that it lacks, for messages.
 std::string state_of(const Set& set, const std::array<std::vector<fs::path>, cube_faces>& faces) {
     std::string there, missing;
     for (int face = 0; face < cube_faces; ++face) {

@@ -28,8 +28,8 @@ enum class EnvironmentShape {
 };
 
 /// Linear, scene-referred RGB radiance. pixels[row * width + column]; for a cube that index is cube_texel_index. A
-/// texel's direction is that of the lat-long convention or of the cube, followed by the rotation. Convention and
-/// rotation are not applied to the pixels, and a cube stays a cube, so nothing is resampled. Exposure and tint are
+/// texel's direction is the one that the lat-long convention or the cube gives it, turned by the rotation. Convention
+/// and rotation are not applied to the pixels, and a cube stays a cube, so nothing is resampled. Exposure and tint are
 /// applied.
 struct EnvironmentMap {
     EnvironmentShape shape = EnvironmentShape::latlong;
@@ -46,7 +46,7 @@ struct EnvironmentMap {
     std::vector<std::string> warnings;  ///< for the user
 };
 
-/// m * v, and transpose(m) * v: for the orthogonal matrices here the inverse.
+/// transform() is m * v. transform_back() is transpose(m) * v, the inverse for the orthogonal matrices here.
 inline Vec3d transform(const Matrix3& m, const Vec3d& v) { return {dot(m[0], v), dot(m[1], v), dot(m[2], v)}; }
 inline Vec3d transform_back(const Matrix3& m, const Vec3d& v) { return m[0] * v.x + m[1] * v.y + m[2] * v.z; }
 

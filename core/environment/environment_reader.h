@@ -13,11 +13,12 @@ namespace hairbake {
 ///   path      a file, a folder or a pattern (environment_files.h)
 ///   settings  layout, convention, rotation, exposure, tint, and how invalid radiance is treated
 ///   progress  reports 0 to 1
-/// The pixels are a lat-long map, or a cube in one of the layouts of cube_layout.h or as six files. The layout
-/// automatic is found by the picture's shape; map.layout is the layout that was read. A cube stays a cube. The declared
-/// size is checked before memory is taken (environment_assembly.h). Throws Error(usage) naming the field out of range,
-/// Error(bad_input) with the file's name, the place in it, what was found and what is allowed, Error(out_of_resources),
-/// Error(cancelled).
+/// The pixels are a lat-long map, or a cube in one of the layouts of cube_layout.h or as six files. With the layout
+/// automatic, the picture's shape decides; map.layout is the layout that was read. A cube stays a cube. The declared
+/// size is checked before memory is taken (environment_assembly.h).
+/// Throws Error(usage) naming the field out of range.
+/// Throws Error(bad_input) with the file's name, the place in it, what was found and what is allowed.
+/// Throws Error(out_of_resources), Error(cancelled).
 EnvironmentMap read_environment(const std::filesystem::path& path, const EnvironmentSettings& settings,
                                 Progress& progress);
 

@@ -7,7 +7,7 @@
 
 namespace hairbake {
 
-/// How the directions of an environment are laid out in its pictures (cube_layout.h).
+/// Layouts of an environment's directions in its pictures (cube_layout.h).
 enum class EnvironmentLayout {
     automatic,  ///< found by the shape of the picture
     latlong,
@@ -28,7 +28,7 @@ inline constexpr std::array environment_layout_names{
 };
 constexpr std::string_view name_of(EnvironmentLayout layout) { return name_in(environment_layout_names, layout); }
 
-/// Which directions the columns of a lat-long map stand for. Row 0 is +Y in all conventions.
+/// Directions of the columns of a lat-long map. Row 0 is +Y in all conventions.
 enum class LatLong {
     gltf,      ///< centre column +X, right of it +Z (three.js, glTF)
     filament,  ///< centre column +Z, right of it +X: a mirror image in this frame, as the convention asks for

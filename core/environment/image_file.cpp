@@ -17,12 +17,13 @@ namespace {
 constexpr int most_channels = 64;
 constexpr std::int64_t pixels_per_piece = 1 << 20;
 constexpr std::uintmax_t most_bytes_of_tiles = std::uintmax_t(512) << 20;  // in one row of them, decoded
-// The most decoded bytes that one byte of a PNG, TIFF or EXR can represent, for any picture. Deflate reaches
-// 1032:1 (a match of 258 bytes in 2 bits). On top of it EXR's DWA keeps 2 + 2 bytes of an 8 x 8 block of floats (256
-// bytes) and 2 bytes of a run of 128: 64 * 1032:1. PNG's 1-bit palettes are decoded to 4 bytes: 32 * 1032:1, TIFF's
-// to 3. EXR's PXR24 reaches 4/3 * 1032:1, PIZ 410:1, RLE 64:1, B44A 32:3; TIFF's Zstandard 32768:1 (128 KiB in 4
-// bytes), LZMA 7100:1, LZW 1700:1 (each code one byte longer than the last), PackBits 64:1. Only TIFF's fax, JBIG, WebP
-// and LERC of one colour can exceed it. Measured on constant maps of 16384 x 8192: at most 33,200:1 (EXR, DWAB).
+// The most decoded bytes that one byte of a PNG, TIFF or EXR can represent, for any picture. Deflate reaches 1032:1 (a
+// match of 258 bytes in 2 bits). Before deflate, EXR's DWA keeps 2 + 2 bytes of an 8 x 8 block of floats (256 bytes),
+// and 2 bytes of a run of 128: together 64 * 1032:1. PNG's 1-bit palettes are decoded to 4 bytes: 32 * 1032:1, TIFF's
+// to 3. EXR's PXR24 reaches 4/3 * 1032:1, PIZ 410:1, RLE 64:1, B44A 32:3. TIFF's Zstandard reaches 32768:1 (128 KiB in
+// 4 bytes), LZMA 7100:1, LZW 1700:1 (each code one byte longer than the last), PackBits 64:1. Only TIFF's fax, JBIG,
+// WebP and LERC of one colour can exceed the limit. Measured on constant maps of 16384 x 8192: at most 33,200:1 (EXR,
+// DWAB).
 constexpr std::uintmax_t best_ratio = 64 * 1032;
 
 struct Source {

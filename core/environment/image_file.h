@@ -1,4 +1,5 @@
-// Reads the pixels of an image file with OpenImageIO. The file is not trusted: sizes are checked before memory is taken.
+// Reads the pixels of an image file with OpenImageIO. The file is not trusted: sizes are checked before memory is
+// taken.
 #pragma once
 
 #include <filesystem>
@@ -22,8 +23,8 @@ struct ImageFile {
     std::vector<std::string> warnings;
 };
 
-/// Checks a declared size before any memory is taken: returns its fault ("the size is ...; allowed is ..."), empty where
-/// there is none.
+/// Checks a declared size before any memory is taken: returns its fault ("the size is ...; allowed is ..."), empty
+/// where there is none.
 using SizeCheck = std::function<std::string(int width, int height)>;
 
 /// Reads an image.
@@ -33,8 +34,8 @@ using SizeCheck = std::function<std::string(int width, int height)>;
 /// Before any memory is taken, the declared size is also compared with the largest that a file of this length can hold,
 /// and tiles are refused when a row of them is too large to decode. Channels R, G, B are found by name (in any layer),
 /// otherwise they are the first three; one channel is grey.
-/// Throws Error(bad_input) with the file, the place, what was found and what is allowed; Error(out_of_resources);
-/// Error(cancelled).
+/// Throws Error(bad_input) with the file, the place, what was found and what is allowed.
+/// Throws Error(out_of_resources), Error(cancelled).
 ImageFile read_image_file(const std::filesystem::path& file, const SizeCheck& check, Progress& progress);
 
 }  // namespace hairbake

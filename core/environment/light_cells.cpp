@@ -121,8 +121,8 @@ std::vector<LightCell> gather_band(const CubeGrid& grid, int face, int band) {
     return cells;
 }
 
-// On the face a cell is a rectangle. Seen from the cube's centre, a step on it is at most the step over sqrt(1 + r^2),
-// with r the distance from the face's middle.
+// On the face a cell is a rectangle. Seen from the cube's centre, a step on it is at most the step divided by sqrt(1 +
+// r^2), with r the distance from the face's middle.
 double cell_diameter(const CubeGrid& grid, int band, int k) {
     const auto nearest = [](double low, double high) { return low > 0 ? low : high < 0 ? high : 0; };
     const double left = grid.coordinate(grid.borders[k]), right = grid.coordinate(grid.borders[k + 1]);

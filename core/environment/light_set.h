@@ -25,7 +25,7 @@ struct LightSet {
 /// A light is at its cell's flux centroid (weighted with the sum of the channels), which keeps flux and first moment. A
 /// kernel is then wrong only by its curvature times the spread inside a cell.
 /// Cells of a lat-long map are the pieces of 2 * resolution latitude bands, each cut into 4 * resolution * sin(theta)
-/// pieces: nearly square, and aligned with the map's rows, so that a row is cut into runs once and no texel needs a
+/// pieces. They are nearly square and aligned with the map's rows. So a row is cut into runs once, and no texel needs a
 /// division. Cells of a cube map are resolution^2 rectangles of a face, of equal angle along its edges. Cells without
 /// light are left out. No cell is smaller than a texel, so each texel of a small map becomes a light (in a lat-long map
 /// except near the poles). Exact solid angles, double sums; the same bytes for any thread count.

@@ -16,8 +16,9 @@ namespace hairbake {
 ///   where     the file's name, for the error
 /// A pixel counts once in every kind that it has; -infinity counts as infinite. energy_removed sums finite negative
 /// values only. Deterministic for any thread count.
-/// Throws Error(bad_input) for the first invalid pixel in row order under reject: it names the pixel (place_of_texel),
-/// its channel, its value and the field environment_settings.invalid_radiance. Throws Error(cancelled).
+/// Throws Error(bad_input) for the first invalid pixel in row order under reject. It names the pixel (place_of_texel),
+/// its channel, its value and the field environment_settings.invalid_radiance.
+/// Throws Error(cancelled).
 RadianceRepairs repair_radiance(EnvironmentMap& map, InvalidRadiance policy, const std::string& where,
                                 const Progress& progress);
 

@@ -26,8 +26,8 @@ struct Channels {
     }
 };
 
-// A row folded into a quarter circle. With column j at phi and its images at -phi, -pi - phi and pi + phi, the sums
-// over the row of cos(m phi) need only the sum (m even) or difference (m odd) of the images; likewise sin(m phi).
+// A row folded into a quarter circle. Column j is at phi, and its images are at -phi, -pi - phi and pi + phi. The sums
+// of cos(m phi) over the row need only the sum (m even) or the difference (m odd) of the images; likewise sin(m phi).
 struct FoldedRow {
     Channels cos_even, cos_odd, sin_even, sin_odd;
     explicit FoldedRow(std::size_t n) : cos_even(n), cos_odd(n), sin_even(n), sin_odd(n) {}

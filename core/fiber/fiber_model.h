@@ -1,4 +1,4 @@
-// What a fibre does with light: the interface of all fibre models.
+// The light that a fibre scatters: the interface of all fibre models.
 //
 // A model is a sum of lobes. A lobe is a kernel K(tangent, to light, to eye) over the sphere of lights. K contains the
 // cosine of the light's angle to the normal plane, so that
@@ -26,7 +26,7 @@ namespace hairbake {
 inline constexpr std::size_t light_block = 256;
 inline constexpr std::size_t most_lobes = 4;
 
-/// Which coefficient scales a lobe, and which channel of a picture shows it.
+/// The coefficient that scales a lobe, and the channel of a picture that shows it.
 enum class LobeRole {
     diffuse,  ///< Kd
     specular  ///< Ks
@@ -61,8 +61,9 @@ struct TangentAngle {
 // The lobes of a model with ZonalKernels.
 inline constexpr int diffuse_lobe = 0, specular_lobe = 1;
 
-/// What irradiance maps need to know of a zonal model. It has two lobes: K of diffuse_lobe does not depend on the view,
-/// K of specular_lobe depends on theta_light + theta_view alone. Angles are to the tangent, in radians, 0 to pi.
+/// The part of a zonal model that irradiance maps use. The model has two lobes: K of diffuse_lobe does not depend on
+/// the view, and K of specular_lobe depends on theta_light + theta_view alone. Angles are to the tangent, in radians, 0
+/// to pi.
 class ZonalKernels {
 public:
     virtual ~ZonalKernels() = default;
@@ -78,7 +79,7 @@ public:
     /// Integral of K^2 over the sphere; equals the sum over all l of lambda_l^2 (2 l + 1) / (4 pi).
     virtual double energy(int lobe, double theta_view) const = 0;
 
-    /// Angle from the specular lobe's peak at which it falls to one half, radians.
+    /// Angle from the specular lobe's peak at which the lobe falls to one half, radians.
     virtual double half_width() const = 0;
 };
 
@@ -86,7 +87,7 @@ class FiberModel {
 public:
     virtual ~FiberModel() = default;
 
-    /// 1 to most_lobes. The first lobe is the broadest: the share of its light that arrives stands for transmittance.
+    /// 1 to most_lobes. The first lobe is the broadest: the arriving share of its light stands for transmittance.
     virtual std::span<const FiberLobe> lobes() const = 0;
 
     /// Whether every kernel depends on the angles to the tangent alone, not on the azimuth between light and eye.
@@ -95,15 +96,15 @@ public:
     /// Whether every kernel stays the same when root and tip are swapped: K(-t, l, e) = K(t, l, e).
     virtual bool is_symmetric_root_tip() const = 0;
 
-    /// Largest second derivative of a lobe by the light's angle, over the lobe's peak (1 / rad^2): p for cos^p, 1 /
-    /// beta^2 for a Gaussian of standard deviation beta. It decides how finely lights and angles are sampled.
+    /// Largest second derivative of a lobe by the light's angle, divided by the lobe's peak (1 / rad^2): p for cos^p,
+    /// 1 / beta^2 for a Gaussian of standard deviation beta. It decides how finely lights and angles are sampled.
     virtual double sharpness() const = 0;
 
     /// Kernels of the lights of one block, in single precision. Finite for the direction (0, 0, 0) as well.
     virtual void evaluate(const LightDirections& lights, const FiberView& view, KernelBlock& kernels) const = 0;
 
-    /// What irradiance maps need; null for a model that has no maps yet. Such a model is not refused by the render
-    /// modes brute, reference and directional.
+    /// The zonal kernels that irradiance maps need; null for a model that has no maps yet. The render modes brute,
+    /// reference and directional take such a model.
     virtual const ZonalKernels* zonal_kernels() const { return nullptr; }
 };
 
@@ -111,8 +112,8 @@ public:
 /// Throws Error(usage) naming the first of its parameters that is out of range (fiber_numbers).
 std::unique_ptr<const FiberModel> make_fiber_model(const FiberSettings& settings);
 
-/// What the maps need of the chosen model `model`, made from `settings`.
-/// Throws Error(usage) naming the model and the models that have maps when this one has none.
+/// The zonal kernels of `model`, which was made from `settings`.
+/// Throws Error(usage) when this model has no maps. The message names the model and the models that have maps.
 const ZonalKernels& zonal_kernels_for_maps(const FiberModel& model, const FiberSettings& settings);
 
 }  // namespace hairbake

@@ -71,7 +71,7 @@ namespace {
 
 constexpr std::array<FiberLobe, 2> kajiya_kay_lobes{
     {{"diffuse", LobeRole::diffuse, false}, {"specular", LobeRole::specular, false}}};
-constexpr double negligible = 1e-12;  // of the specular lobe's peak: single precision sums do not feel it
+constexpr double negligible = 1e-12;  // of the specular lobe's peak: too little for sums in single precision
 
 class KajiyaKay final : public FiberModel, public ZonalKernels {
 public:

@@ -1,4 +1,4 @@
-// What a groom file gives.
+// The contents of a groom file.
 #pragma once
 
 #include <string>
@@ -9,12 +9,12 @@
 
 namespace hairbake {
 
-/// How a groom file is read.
+/// Settings for reading a groom file.
 struct HairReadSettings {
     double time = 0;  ///< seconds; which sample of an animation. Formats without animation warn unless it is 0
 };
 
-/// A model and what its reader tells about it.
+/// A model with its reader's extras, description and warnings.
 struct Groom {
     HairModel model;
     HairFileExtras extras;    ///< for the HAIR form of the model; a reader of another format may leave it alone

@@ -13,7 +13,7 @@ namespace hairbake {
 /// Reads a groom file. Its first bytes decide the format, whatever its name:
 /// - "HAIR": Cem Yuksel's format (hair_format.h);
 /// - the number 3.0 or 4.0 as a float: a binary TressFX asset of that version (tfx_reader.h).
-/// The name's extension decides only which reader's message refuses a file that begins as none of these.
+/// Where the first bytes match no format, the name's extension chooses the reader whose message refuses the file.
 ///
 /// - file: a regular file. Counts and offsets are checked against its size before memory is taken.
 /// - settings: a time other than 0 gives a warning where the format holds no animation.
@@ -32,8 +32,8 @@ Groom read_groom(std::span<const std::byte> bytes, const std::string& name, cons
 HairModel read_hair(const std::filesystem::path& file, const HairReadSettings& settings = {});
 HairModel read_hair(std::span<const std::byte> bytes, const std::string& name);
 
-/// Whether the file begins as one of the formats that read_groom() knows, or has the extension of one and so deserves
-/// that reader's message.
+/// Whether the file begins as one of the formats that read_groom() knows, or has the extension of one. In the second
+/// case read_groom() refuses it with the message of that reader.
 /// Throws Error(bad_input) when the file cannot be opened.
 bool is_hair_file(const std::filesystem::path& file);
 

@@ -1,4 +1,4 @@
-// What a HAIR file holds besides the model.
+// The contents of a HAIR file besides the model.
 #pragma once
 
 #include <array>

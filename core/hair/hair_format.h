@@ -31,7 +31,7 @@ struct HairHeader {
 static_assert(std::endian::native == std::endian::little, "HAIR files are copied to and from memory as they are");
 static_assert(sizeof(HairHeader) == 128 && sizeof(Vec3f) == 12 && std::is_trivially_copyable_v<HairHeader>);
 
-/// Reads every combination of the array bits but those without the points array, which the format demands. The file
+/// Reads every combination of the array bits that has the points array, which the format demands. The file
 /// must have exactly the length that its header implies.
 extern const HairReader hair_format_reader;
 

@@ -109,7 +109,7 @@ HairModel read_model(const HairSource& source, const HairHeader& h) {
     if (h.arrays & has_thickness) model.thickness = arrays.next<float>(h.points);
     if (h.arrays & has_transparency) model.transparency = arrays.next<float>(h.points);
     if (h.arrays & has_colors) model.colors = arrays.next<Vec3f>(h.points);
-    // Beside an array, files hold junk as default.
+    // Where a file has an array, the default of that array holds junk.
     if (model.thickness.empty()) model.default_thickness = h.default_thickness;
     if (model.transparency.empty()) model.default_transparency = h.default_transparency;
     if (model.colors.empty()) model.default_color = h.default_color;

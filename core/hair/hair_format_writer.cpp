@@ -61,7 +61,7 @@ HairHeader header_of(const HairModel& model, const HairFileExtras& extras) {
     if (!model.transparency.empty()) h.arrays |= has_transparency;
     if (!model.colors.empty()) h.arrays |= has_colors;
     h.default_segments = extras.default_segments;
-    // A default that the arrays of the file leave unused goes back as it came.
+    // A default that is not used, because the file has the array, is written as it was read.
     const auto used = [&](std::uint32_t array) { return !(h.arrays & array); };
     h.default_thickness = used(has_thickness) ? model.default_thickness : extras.default_thickness;
     h.default_transparency = used(has_transparency) ? model.default_transparency : extras.default_transparency;

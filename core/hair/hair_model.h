@@ -10,7 +10,7 @@
 
 namespace hairbake {
 
-/// What the baking and every output need of a model, whatever the format of its file.
+/// The data of a model that the baking and every output need, whatever the format of its file.
 ///
 /// Strands stand in file order. V = positions.size() is the number of points, S = strand_begin.size() - 1 that of
 /// strands. Strand s owns the points [strand_begin[s], strand_begin[s + 1]), root first, at least one each. Positions

@@ -23,12 +23,12 @@ struct HairReader {
     /// Whether a file that begins with `bytes` is of this format. Nothing else decides which reader gets a file.
     bool (*recognises)(std::span<const std::byte> bytes);
 
-    /// Reads the file. It is also called for a file that begins as no format does but has this extension, and must then
-    /// refuse it. Leaves `warnings` about the time to the caller. Errors: as read_groom() says.
+    /// Reads the file. It is also called for a file that has this extension but begins as no known format; it must
+    /// refuse such a file. Leaves `warnings` about the time to the caller. Errors: as read_groom() says.
     Groom (*read)(const HairSource& source, const HairReadSettings& settings);
 };
 
-/// All readers. One more reader is a file of its own and a line in hair_readers.cpp.
+/// All readers. A new reader is a file of its own and a line in hair_readers.cpp.
 std::span<const HairReader* const> hair_readers();
 
 /// Throws Error(bad_input) for a file that begins as none of the formats: what was found and what is allowed.

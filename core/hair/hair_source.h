@@ -32,8 +32,9 @@ struct HairSource {
     }
 };
 
+/// `name` stands for the file in messages. A default value is in use where the model has no array.
 /// Throws Error(bad_input) naming strand and vertex unless every value in use is finite and every coordinate is at most
-/// 1e18 in magnitude. A default value is in use where the model has no array.
+/// 1e18 in magnitude.
 void check_numbers(const std::string& name, const HairModel& model);
 
 }  // namespace hairbake

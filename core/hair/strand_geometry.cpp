@@ -95,7 +95,7 @@ Vec3f median_position(std::vector<Vec3f> positions) {
 }
 
 /// One point far out makes the bounds so large that the strands themselves count as degenerate. A would silently be 1,
-/// and the traced reference would agree. A point is taken for far out where half of all points lie within a hundredth of
+/// and the traced reference would agree. A point counts as far out where half of all points lie within a hundredth of
 /// the longest side. Otherwise the segments themselves are short, as where every point is duplicated.
 void check_for_stray_point(const HairModel& model, const StrandGeometry& geometry, const SegmentCounts& counts) {
     const Vec3d median(median_position(model.positions));

@@ -1,7 +1,7 @@
 // AMD's TressFX asset (.tfx), binary versions 3.0 and 4.0: the guide strands of a game's hair.
 //
-// Layout (little-endian; uint32 but the first; offsets in bytes from the file's beginning, 0 for an array that is not
-// there; strand after strand, root first, every strand with the same number of points):
+// Layout (little-endian; uint32 except the first; offsets in bytes from the file's beginning, 0 for an array that is
+// not there; strand after strand, root first, every strand with the same number of points):
 //   4.0: float version; strands; points a strand; offsets of positions (float4: x, y, z, inverse mass), strand UV
 //        (float2), vertex UV (float2), strand thickness (float), vertex colours (float4); 32 reserved: 160 bytes.
 //   3.0: float version; strands; points a strand; follow hairs a guide; both ends immovable; 31 reserved; offsets of

@@ -25,8 +25,8 @@ constexpr double sample_step = 2 * pi / samples;
 constexpr std::array<double, 17> positions{0.001,  0.0625, 0.125,  0.1875, 0.25,   0.3125, 0.375,  0.4375, 0.5,
                                            0.5625, 0.625,  0.6875, 0.75,   0.8125, 0.875,  0.9375, 0.999};
 
-// For one light: the largest error of interpolating the kernel over the positions between two maps, by the sum theta +
-// theta'_m of the angles.
+// The error of interpolating the kernel of one light, as a function of the sum theta + theta'_m of the angles: the
+// largest over the positions between two maps.
 std::vector<double> worst_error_by_sum(const ZonalKernels& kernels, double spacing) {
     const auto specular = [&](double theta_light, double theta_view) {
         return kernels.kernel(specular_lobe, theta_light, theta_view);

@@ -13,9 +13,9 @@ namespace hairbake {
 /// error of interpolating between maps m and m + 1 at any theta' between them. The bound holds for every tangent within
 /// `radius` (radians) of t and of the light.
 ///
-/// The largest sum of such a row over the lights, over all rows and over tangents that cover half the sphere with that
-/// radius, is therefore an upper bound, per channel, of |(1 - f) S_m(t) + f S_m+1(t) - S(t, theta')| for the texels
-/// that the lights gather.
+/// Sum such a row over the lights. The largest sum of all rows, over tangents that cover half the sphere with that
+/// radius, is an upper bound, per channel, of |(1 - f) S_m(t) + f S_m+1(t) - S(t, theta')| for the texels that the
+/// lights gather.
 ///
 /// Method: the specular kernel depends on theta + theta' alone (ZonalKernels), so one light's error depends on theta +
 /// theta'_m and f. Its absolute value is maximised over f and over angles within `radius` and one table step. 2 % are

@@ -22,7 +22,7 @@ using std::numbers::pi;
 namespace {
 
 constexpr int reported_bands = 8;
-constexpr int bound_resolution = 32;  // of the lights that the bound of the method sh sums over
+constexpr int bound_resolution = 32;  // of the lights over which the method sh sums its bound
 
 /// The result with these texels.
 IrradianceMaps result_of(TangentMaps baked) {

@@ -41,8 +41,8 @@ struct IrradianceMaps {
     Vec3d interpolation_bound;
     double interpolation_bound_relative = 0;
 
-    /// sh only: bands used and predicted truncation error (RMS over the largest value of all maps before `lights` are
-    /// added; lights have no such error; sh_maps.h). Zero for exact.
+    /// sh only: bands used, and the predicted truncation error. The error is an RMS, relative to the largest value of
+    /// all maps before `lights` are added; lights have no such error (sh_maps.h). Zero for exact.
     int sh_bands_diffuse = 0, sh_bands_specular = 0;
     double predicted_error_diffuse = 0, predicted_error_specular = 0;
 
@@ -63,8 +63,9 @@ void validate(const IrradianceSettings& settings);
 ///   fiber        the model; it must have zonal kernels (fiber_model.h)
 ///   progress     reports 0 to 1
 /// The same arguments give the same bytes for any thread count.
-/// Throws Error(usage) naming the field for a value out of range or a model that has no maps, Error(bad_input) for an
-/// environment whose pixels were not repaired (negative, infinite, NaN), Error(cancelled).
+/// Throws Error(usage) naming the field for a value out of range or a model that has no maps.
+/// Throws Error(bad_input) for an environment whose pixels were not repaired (negative, infinite, NaN).
+/// Throws Error(cancelled).
 IrradianceMaps bake_irradiance(const EnvironmentMap& environment, const IrradianceSettings& settings,
                                const FiberSettings& fiber, Progress& progress);
 

@@ -43,7 +43,7 @@ public:
     const AngleGrid& grid() const { return grid_; }
     int rows() const { return static_cast<int>(spans_.size()); }
 
-    /// Sums a row against a histogram [4 * nodes] (red, green, blue, unused).
+    /// Sum over the nodes of a row times a histogram [4 * nodes] (red, green, blue, unused).
     Vec3f apply(int row, std::span<const float> histogram) const;
 
 private:
@@ -59,7 +59,8 @@ private:
 /// linear between nodes. Returns [tangents * rows].
 /// All zonal maps depend on a light through its angle to the tangent alone. A histogram of flux over that angle is
 /// therefore made once per tangent, and the number of kernels hardly changes the time. Single precision inside,
-/// relative error about 1e-5. The same bytes for any thread count. Throws Error(cancelled).
+/// relative error about 1e-5. The same bytes for any thread count.
+/// Throws Error(cancelled).
 std::vector<Vec3f> sum_kernels(const LightSet& lights, std::span<const Vec3d> tangents, const KernelTable& table,
                                const Progress& progress);
 

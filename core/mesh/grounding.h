@@ -10,8 +10,8 @@
 
 namespace hairbake {
 
-/// Lengths of the occluder's shadow as parts of `size`, the longest side of the hair's bounds. They do not depend on the
-/// voxels, so that the bake and the reference compute the same quantity.
+/// Lengths of the occluder's shadow as fractions of `size`, the longest side of the hair's bounds. They do not depend
+/// on the voxels, so that the bake and the reference compute the same quantity.
 struct ShadowScale {
     double size = 1;
     /// Points up to this deep below the surface (a voxel of the default grid) still count as lying on it.
@@ -31,8 +31,9 @@ struct GroundedPoint {
 };
 
 /// Those of `points` whose nearest triangle is at most scale.lift() below them (on the side of its normal) or
-/// scale.reach() above them, in ascending order. The rays of every other point start at the point itself; inside a closed
-/// mesh all of them are blocked. A triangle runs counter-clockwise seen from outside; a closed mesh may be inside out.
+/// scale.reach() above them, in ascending order. The rays of every other point start at the point itself; inside a
+/// closed mesh all of them are blocked. A triangle runs counter-clockwise seen from outside; a closed mesh may be
+/// inside out.
 /// The same for any thread count.
 /// Throws Error(cancelled).
 std::vector<GroundedPoint> ground_points(std::span<const Vec3f> points, const TriangleMesh& occluder,

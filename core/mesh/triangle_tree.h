@@ -20,7 +20,7 @@ public:
         double distance;
         Vec3d point;             ///< on the triangle
         Vec3d normal;            ///< unit, of the triangle, counter-clockwise
-        std::uint32_t triangle;  ///< of those at this distance the one that faces `p` most squarely
+        std::uint32_t triangle;  ///< of several at this distance, the one that faces `p` most squarely
     };
     /// The triangle nearest to `p` within `reach` of it.
     std::optional<Nearest> nearest(const Vec3d& p, double reach) const;

@@ -30,7 +30,7 @@ bool Canvas::text(int x, int y, const std::string& words, int size, Color color,
                                                  : ImageBufAlgo::TextAlignX::Right;
     const bool drawn = ImageBufAlgo::render_text(picture, x, y, words, size, font, rgb, anchor,
                                                  ImageBufAlgo::TextAlignY::Baseline, 0, ROI(), 1);
-    if (!drawn) picture.geterror();  // read, or OpenImageIO prints it
+    if (!drawn) picture.geterror();  // read it here, or OpenImageIO prints it
     return drawn;
 }
 

@@ -5,8 +5,8 @@
 namespace hairbake {
 namespace {
 
-/// What one texel of the smaller level covers along a row (or column) of the larger one: the shares, in (0, 1], of two
-/// or, where the size was odd, three texels from `first` on.
+/// The part of a row (or column) of the larger level that one texel of the smaller level covers: the shares, in (0, 1],
+/// of two texels from `first` on, or of three where the size was odd.
 struct Cover {
     int first = 0;
     std::vector<double> shares;

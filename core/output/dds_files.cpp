@@ -37,7 +37,7 @@ std::string dds_header(int face_size, int levels) {
     word(10);  // DXGI_FORMAT_R16G16B16A16_FLOAT
     word(3);   // two-dimensional
     word(4);   // cube map
-    word(1);   // of them one
+    word(1);   // array of one
     word(0);
     return bytes;
 }

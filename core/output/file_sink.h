@@ -14,14 +14,14 @@
 
 namespace hairbake {
 
-/// What the manifest says about a file of the result.
+/// The manifest's entry for a file of the result.
 struct WrittenFile {
     std::string name;  ///< within the result folder
     std::string sha256;
     std::uint64_t bytes = 0;
     std::vector<std::size_t> shape;  ///< of arrays and images, rows first; else empty
     std::string content;             ///< one line for people
-    std::optional<double> scale{};   ///< of half floats of radiance: the value is what is stored times this
+    std::optional<double> scale{};   ///< of half floats of radiance: value = stored half * scale
 };
 
 /// Writes one new file. Not thread-safe. A full disk, a quota or a size limit is Error(out_of_resources); any other
@@ -36,7 +36,7 @@ public:
     void write(std::span<const std::byte> bytes);
     void write(std::string_view text) { write(std::as_bytes(std::span(text))); }
 
-    /// Flushes to the disk itself (fsync) and closes; name, digest and size of what was written.
+    /// Flushes to the disk itself (fsync) and closes. Returns name, digest and size of the file.
     WrittenFile finish();
 
 private:
@@ -49,18 +49,18 @@ private:
     std::vector<std::byte> pending_;  ///< small writes, collected
 };
 
-/// Where write_whole_file() writes until the file is whole: a hidden neighbour.
+/// The hidden file beside `file` into which write_whole_file() writes until the file is whole.
 std::filesystem::path part_of(const std::filesystem::path& file);
 
-/// Removes part_of(file), for who ends in the middle of it.
+/// Removes part_of(file), for a process that ends during write_whole_file().
 void discard_part(const std::filesystem::path& file) noexcept;
 
-/// Writes a file that appears whole, in place of one that is there: `bytes` go to part_of(file) first. Nothing is
-/// left of them when that fails. Throws as FileSink does, std::filesystem::filesystem_error where the name cannot be
-/// taken.
+/// Writes a file that appears whole and replaces an existing one. `bytes` go to part_of(file) first; a failure removes
+/// that file.
+/// Throws as FileSink does, and std::filesystem::filesystem_error where the name cannot be taken.
 void write_whole_file(const std::filesystem::path& file, std::span<const std::byte> bytes);
 
-/// Error for the system's errno about `file`: its kind tells a full disk from other failures.
+/// Error for the system's errno about `file`: its kind separates a full disk from other failures.
 [[noreturn]] void throw_system_error(const std::filesystem::path& file, int error);
 
 }  // namespace hairbake

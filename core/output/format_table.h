@@ -1,5 +1,5 @@
-// The output formats: which function writes which. One more format is a file with such a function, a row here, and its
-// name in config/request.schema.json (the list of outputs, and x-stages: the stages that write it).
+// The output formats, each with the function that writes it. A new format is a file with such a function, a row here,
+// and its name in config/request.schema.json (the list of outputs, and x-stages: the stages that write it).
 #pragma once
 
 #include <filesystem>
@@ -13,12 +13,12 @@
 
 namespace hairbake {
 
-/// What a writer works with. Refers to its parts.
+/// The input of a writer. Refers to its parts.
 struct OutputContext {
     const BakeResult& result;
     const std::filesystem::path& folder;  ///< where the files go
     Progress& progress;
-    std::vector<std::string>& warnings;  ///< what went less than well is added
+    std::vector<std::string>& warnings;  ///< the writer adds its own
 };
 
 /// Writes the files of one format of one stage's part; none where the part holds nothing for it.

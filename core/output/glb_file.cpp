@@ -23,7 +23,7 @@ class GltfBuilder {
 public:
     GltfBuilder() { gltf.buffers.emplace_back(); }
 
-    /// The values of the view are interleaved records of `stride` bytes, or tightly packed with 0.
+    /// The values of the view are records of `stride` bytes; 0 for tightly packed values.
     int add_view(std::span<const std::byte> bytes, int target, std::size_t stride = 0) {
         std::vector<unsigned char>& data = gltf.buffers[0].data;
         tinygltf::BufferView view;
@@ -135,7 +135,7 @@ tinygltf::Model make_gltf(const HairModel& model, std::span<const VertexArray> a
     gltf.asset.generator = "hairbake " + version();
     gltf.defaultScene = 0;
     gltf.scenes.emplace_back();
-    gltf.scenes[0].name = "hair";  // tinygltf writes null for a scene with nothing to say
+    gltf.scenes[0].name = "hair";  // tinygltf writes null for a scene without any member
     if (model.vertex_count() == 0) {
         gltf.buffers.clear();
         return gltf;
@@ -156,7 +156,7 @@ tinygltf::Model make_gltf(const HairModel& model, std::span<const VertexArray> a
 }  // namespace
 
 void check_glb_size(std::uint64_t vertices, std::uint64_t strands, const BakeRequest& request) {
-    constexpr std::uint64_t limit = 0xFFFFFFFF, json = 1 << 16;  // the page in front is a few thousand bytes
+    constexpr std::uint64_t limit = 0xFFFFFFFF, json = 1 << 16;  // the JSON in front takes a few thousand bytes
     std::uint64_t per_vertex = 12 + 12;                          // position and tangent
     for (const ArrayKind& kind : array_kinds())
         if (kind.owner == ArrayOwner::hair) per_vertex += sizeof(float) * kind.components(request);

@@ -14,7 +14,7 @@ struct HairPicture {
     std::vector<float> value;
 };
 
-/// Which way the camera looks, without perspective: from +Z (the face of a head that looks along +Z) or from +X.
+/// Direction of the camera, which has no perspective: from +Z (the face of a head that looks along +Z) or from +X.
 enum class View { front, side };
 
 /// The whole model fitted into size x size pixels with a small margin. `average` is [V].

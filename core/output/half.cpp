@@ -20,7 +20,7 @@ double largest_of(const CubeTexels& texels, int face_size, const std::string& ma
             throw Error(ErrorKind::bad_input, map + " map: face " + std::string(cube_face_name(int(i / n / n))) +
                                                   ", row " + std::to_string(i / n % n) + ", column " +
                                                   std::to_string(i % n) +
-                                                  " is not finite; half floats are written of finite maps only");
+                                                  " is not finite; allowed for half floats are finite maps");
         }
         largest = std::max({largest, std::abs(double(t.x)), std::abs(double(t.y)), std::abs(double(t.z))});
     }
@@ -32,7 +32,8 @@ double largest_of(const CubeTexels& texels, int face_size, const std::string& ma
 Half to_half(float value) { return Imath::half(value).bits(); }
 
 double half_scale(double largest) {
-    if (!std::isfinite(largest)) throw Error(ErrorKind::bad_input, "half floats are written of finite values only");
+    if (!std::isfinite(largest))
+        throw Error(ErrorKind::bad_input, "a value is not finite; allowed for half floats are finite ones");
     if (largest == 0 || (largest >= 0.0625 && largest <= largest_half)) return 1;
     // largest = f 2^e with f in [0.5, 1): 2^(e-16) takes it to f 65536, which may lie above 65,504.
     int e = 0;

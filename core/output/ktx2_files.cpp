@@ -18,7 +18,7 @@ namespace {
 constexpr std::string_view identifier("\xABKTX 20\xBB\r\n\x1A\n", 12);
 constexpr std::uint32_t vk_format_r16g16b16a16_sfloat = 97;
 constexpr std::uint32_t header_bytes = 80, level_index_bytes = 24, descriptor_bytes = 92;
-constexpr std::size_t level_alignment = 8;  // of the least common multiple of a texel's 8 bytes and 4
+constexpr std::size_t level_alignment = 8;  // the least common multiple of 4 and of a texel's 8 bytes
 
 std::uint32_t khr_df_primaries(const std::string& name) {
     constexpr std::array<std::pair<std::string_view, std::uint32_t>, 5> known{

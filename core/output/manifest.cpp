@@ -89,7 +89,7 @@ Json conventions() {
             {"units", "maps: radiance times steradian, Kd and Ks not applied; transmittance: 0 to 1"}};
 }
 
-/// What was repaired, or left out, of the inputs.
+/// The repairs of the inputs, and the parts of them that were left out.
 Json repairs(const BakeResult& result) {
     Json block = Json::object();
     for (const StagePart& part : result.parts)
@@ -181,7 +181,7 @@ std::vector<std::string> files_of_result(const std::filesystem::path& folder) {
     try {
         const Json manifest = Json::parse(text);
         if (manifest.at("format") != format_name)
-            throw Error(ErrorKind::bad_input, file.string() + " is not of hairbake");
+            throw Error(ErrorKind::bad_input, file.string() + " is not a manifest of hairbake");
         std::vector<std::string> names;
         for (const Json& entry : manifest.at("files")) names.push_back(entry.at("name").get<std::string>());
         return names;

@@ -1,4 +1,4 @@
-// manifest.json: what was baked, from what, how, and which files came of it.
+// manifest.json: the inputs, the settings and the figures of a bake, and the files of its result.
 #pragma once
 
 #include <filesystem>
@@ -18,12 +18,13 @@ std::string make_manifest(const BakeResult& result, const std::vector<WrittenFil
 void write_manifest(const BakeResult& result, const std::vector<WrittenFile>& files,
                     const std::filesystem::path& folder);
 
-/// The text of a manifest.json, which any file may call itself: throws Error(bad_input) naming the file where it cannot
-/// be read, is longer than 16 MiB (one of 257 maps has 0.3) or is nested deeper than 64 levels.
+/// The text of a manifest.json. It is not trusted: any file may have this name.
+/// Throws Error(bad_input) naming the file where it cannot be read, is longer than 16 MiB (one of 257 maps has 0.3) or
+/// is nested deeper than 64 levels.
 std::string read_manifest_text(const std::filesystem::path& file);
 
-/// Names of the files that the manifest.json in `folder` lists. Throws Error(bad_input) when there is none of
-/// hairbake's.
+/// Names of the files that the manifest.json in `folder` lists.
+/// Throws Error(bad_input) when the folder has no manifest.json of hairbake.
 std::vector<std::string> files_of_result(const std::filesystem::path& folder);
 
 }  // namespace hairbake

@@ -29,7 +29,7 @@ Json receiver_means(const std::vector<float>& receiver) {
             {"cosine_mean", points > 0 ? Json(cosine / points) : Json()}};
 }
 
-/// Without a vertex to measure at there is no error, which is not an error of 0: null.
+/// Null without a vertex to measure at: an unknown error is not an error of 0.
 Json error_bar(const ErrorBar& bar) {
     const auto measured = [&](const auto& value) { return bar.vertices > 0 ? Json(value) : Json(); };
     return {{"rmse", measured(bar.rmse)},

@@ -1,4 +1,4 @@
-// What the manifest says of each stage.
+// The manifest's entries about each stage.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -8,7 +8,7 @@
 
 namespace hairbake {
 
-/// The manifest's top-level entries about this part: a block with the stage's name and, of the transmittance,
+/// The manifest's top-level entries about this part: a block with the stage's name, and for the transmittance also
 /// "error_bar".
 nlohmann::ordered_json describe_part(const StagePart& part, const BakeRequest& request);
 

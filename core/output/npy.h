@@ -25,8 +25,9 @@ struct NpyArray {
 /// "[2, 6, 4, 4, 3]", for messages.
 std::string shape_text(std::span<const std::size_t> shape);
 
-/// Reads a file of the kind that hairbake writes. Throws Error(bad_input) naming the file for any other .npy (another
-/// type, Fortran order, version), a truncated or over-long one; sizes are checked before memory is taken.
+/// Reads a file of the kind that hairbake writes. Sizes are checked before memory is taken.
+/// Throws Error(bad_input) naming the file for any other .npy (another type, Fortran order, another version), and for a
+/// truncated or over-long one.
 NpyArray read_npy(const std::filesystem::path& file);
 
 }  // namespace hairbake

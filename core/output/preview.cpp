@@ -155,7 +155,7 @@ void draw_net(Sheet& sheet, const CubeTexels& cube, int face_size, double stops,
     }
 }
 
-/// What stands beside the map of a lobe that has one.
+/// The lines beside the map of a lobe that has one map.
 std::vector<std::string> map_facts(const BakeResult& result, const StagePart& part, const MapLobe& lobe, double stops) {
     const int n = part.maps->face_size;
     std::vector<std::string> lines{format("shown at %+.2f stops", stops),

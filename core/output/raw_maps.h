@@ -1,4 +1,4 @@
-// Irradiance maps for browsers: half floats as WebGL takes them, and a page of JSON.
+// Irradiance maps for browsers: half floats as WebGL takes them, and a JSON file.
 #pragma once
 
 #include <filesystem>
@@ -19,8 +19,8 @@ namespace hairbake {
 /// maps.json: one object of
 ///     content "hairbake irradiance maps"; file "maps.f16"; type "float16"; byte_order "little"; shape, as above;
 ///     face_size n; channels "RGBA"; faces ["+X", "-X", ...]; rows "from the top";
-///     scale: the value is what is stored times this power of two (half.h);
-///     model, exponent, units, frame, primaries: texts but for the exponent;
+///     scale: the value is the stored half times this power of two (half.h);
+///     model, exponent, units, frame, primaries: texts, except the exponent;
 ///     maps: a list of {name "diffuse" or "specular", theta_prime_deg (specular only), offset, bytes}, in bytes of
 ///     maps.f16.
 ///

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Writes arrays one after the other and keeps what the page says of them.
+/// Writes arrays one after the other and collects their entries of strands.json.
 class ArrayFile {
 public:
     explicit ArrayFile(const std::filesystem::path& file) : sink_(file) {}

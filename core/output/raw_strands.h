@@ -1,4 +1,4 @@
-// The hair with its transmittance for browsers: arrays that become vertex buffers as they are, and a page of JSON.
+// The hair with its transmittance for browsers: arrays that become vertex buffers unchanged, and a JSON file.
 #pragma once
 
 #include <filesystem>
@@ -14,8 +14,8 @@ namespace hairbake {
 /// strands.bin: arrays one after the other, little-endian, each at a multiple of 8 bytes, for V vertices in the file's
 /// order and S strands:
 ///     positions                  float32 [V, 3]        model units (halves would show as steps: they have 11 bits)
-///     strand_begin               uint32  [S + 1]       strand s owns the vertices from strand_begin[s] up to, but
-///                                                      without, strand_begin[s + 1]
+///     strand_begin               uint32  [S + 1]       strand s owns the vertices
+///                                                      [strand_begin[s], strand_begin[s + 1])
 ///     tangent_and_transmittance  float16 [V, 4]        unit tangent from root to tip (tangents.h), and A in [0, 1]
 ///     transmittance_sh           float16 [V, bands^2]  only with sh_bands: coefficients in the order l*l + l + m
 ///     bent_cone                  float16 [V, 4]        only with bent_cone: unit axis, half-angle in radians

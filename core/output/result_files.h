@@ -1,4 +1,4 @@
-// Which files a result has.
+// Writes the files of a result.
 #pragma once
 
 #include <filesystem>
@@ -11,12 +11,12 @@
 
 namespace hairbake {
 
-/// To be asked before the bake, as it takes no time.
+/// Checks the outputs. Call it before the bake: it takes no time.
 /// Throws Error(bad_input) when one of the request's outputs cannot hold the hair.
 void check_outputs(const BakeRequest& request, const HairModel& hair);
 
-/// Writes everything but the manifest into `folder`, which is empty: what request.outputs names of the stages that ran,
-/// environment_sh.json and preview.png. Adds what went less than well to result.warnings.
+/// Writes everything but the manifest into `folder`, which is empty: the files of request.outputs for the stages that
+/// ran, environment_sh.json and preview.png. Adds warnings to result.warnings.
 /// Throws Error(cancelled) between files, and what FileSink and the writers throw.
 std::vector<WrittenFile> write_files(BakeResult& result, const std::filesystem::path& folder, Progress& progress);
 

@@ -43,7 +43,7 @@ bool move(const fs::path& from, const fs::path& to, unsigned flags) {
     return ::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), flags) == 0;
 }
 
-/// ".NAME.hairbake-HOST-": what the staging folders of `path` begin with, on this machine.
+/// ".NAME.hairbake-HOST-": the names of the staging folders of `path` on this machine begin with it.
 std::string staging_prefix(const fs::path& path) {
     char host[256] = "";
     ::gethostname(host, sizeof host - 1);
@@ -107,7 +107,7 @@ void discard_staging(const fs::path& folder) noexcept {
         fs::rename(staging, gone, error);
         if (!error) fs::remove_all(gone, error);
     } catch (const std::exception&) {
-        // Nothing more can be done by a process that ends.
+        // A process that ends can do nothing more.
     }
 }
 
@@ -145,7 +145,7 @@ void ResultFolder::commit() {
 void ResultFolder::replace() {
     if (move(staging_, folder_, 0)) return;  // it was empty
     if (errno != ENOTEMPTY && errno != EEXIST) throw_system_error(folder_, errno);
-    check_result_folder(folder_);  // again: a bake takes its time
+    check_result_folder(folder_);  // again: the folder may have changed during the bake
     if (move(staging_, folder_, RENAME_EXCHANGE)) return;
     if (errno != EINVAL && errno != ENOSYS) throw_system_error(folder_, errno);
 

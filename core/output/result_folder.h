@@ -9,20 +9,21 @@ namespace hairbake {
 /// earlier result. Such a result (a manifest.json of hairbake and nothing that it does not list) may be replaced.
 void check_result_folder(const std::filesystem::path& folder);
 
-/// Where the files of `folder` are written before they are moved into place: a hidden folder beside it, named after
-/// it, this machine and this process.
+/// The hidden folder in which the files of `folder` are written before they are moved into place. It lies beside
+/// `folder` and is named after it, this machine and this process.
 std::filesystem::path staging_folder(const std::filesystem::path& folder);
 
-/// Removes this process's staging folder for `folder`, if there is one; a ResultFolder at work on it fails to commit
-/// from then on. For a process that is about to end; may be called from another thread than the writer's.
+/// Removes this process's staging folder for `folder`, if there is one. A ResultFolder that is writing there fails to
+/// commit from then on. For a process that is about to end; may be called from another thread than the writer's.
 void discard_staging(const std::filesystem::path& folder) noexcept;
 
 /// Write files to path(), then commit(). Without commit() nothing remains.
 class ResultFolder {
 public:
     /// Checks `folder`, makes the staging folder (and missing parents) and removes those that killed processes of this
-    /// machine left for the same folder. Throws Error(usage), Error(bad_input) when
-    /// the place is not writable, Error(out_of_resources).
+    /// machine left for the same folder.
+    /// Throws Error(usage), Error(out_of_resources).
+    /// Throws Error(bad_input) when the place is not writable.
     explicit ResultFolder(const std::filesystem::path& folder);
     ~ResultFolder();
     ResultFolder(const ResultFolder&) = delete;
@@ -30,7 +31,7 @@ public:
 
     const std::filesystem::path& path() const { return staging_; }
 
-    /// Moves the files into place in one step of the file system; an earlier result gives way in the same step.
+    /// Moves the files into place in one step of the file system, which also removes an earlier result from there.
     void commit();
 
 private:

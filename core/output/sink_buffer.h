@@ -8,8 +8,8 @@
 
 namespace hairbake {
 
-/// The buffer of a stream whose bytes go to a sink. Errors of the sink pass through the stream as exceptions when the
-/// stream has them on: stream.exceptions(std::ios::badbit).
+/// The buffer of a stream whose bytes go to a sink. Errors of the sink pass through the stream as exceptions where the
+/// stream's exceptions are enabled: stream.exceptions(std::ios::badbit).
 class SinkBuffer : public std::streambuf {
 public:
     explicit SinkBuffer(FileSink& sink) : sink_(sink) {}

@@ -1,4 +1,4 @@
-// From radiance to what a screen shows.
+// Turns radiance into the 8-bit colours of a screen.
 #pragma once
 
 #include <vector>

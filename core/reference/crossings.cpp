@@ -22,18 +22,18 @@ Way between_roots(double a, double b, double c) {
     return {(-b - root) / a, (-b + root) / a};
 }
 
-/// Way of the ray t l through a sphere.
+/// The part of the ray t l inside a sphere.
 Way through_sphere(const Vec3d& centre, const Vec3d& l, double radius) {
     return between_roots(1, -dot(centre, l), dot(centre, centre) - radius * radius);
 }
 
-/// Way of the ray t l through the cylinder about the axis from a to a + axis.
+/// The part of the ray t l inside the cylinder about the axis from a to a + axis.
 Way through_cylinder(const Vec3d& a, const Vec3d& axis, const Vec3d& l, double radius) {
     const double axis_length = length(axis);
     const Vec3d unit = axis / axis_length;
     const Vec3d across_l = l - unit * dot(l, unit), across_a = a - unit * dot(a, unit);
     const double climb = dot(l, unit), foot = dot(a, unit), square = dot(across_l, across_l);
-    if (square < 1e-14) return {};  // along the axis: the end spheres cover the whole way
+    if (square < 1e-14) return {};  // along the axis: the end spheres cover all of it
     Way way = between_roots(square, -dot(across_l, across_a), dot(across_a, across_a) - radius * radius);
     if (std::abs(climb) > 1e-9) {
         const double t0 = foot / climb, t1 = (foot + axis_length) / climb;
@@ -44,7 +44,8 @@ Way through_cylinder(const Vec3d& a, const Vec3d& axis, const Vec3d& l, double r
     return way.begin <= way.end ? way : Way{};
 }
 
-/// Way of a ray through a segment with round ends. The segment is as thick as its thicker end, plus a rounding error.
+/// The part of a ray inside a segment with round ends. The segment is as thick as its thicker end, plus a rounding
+/// error.
 Way through_segment(const StrandGeometry& strands, std::uint32_t segment, const Vec3d& origin, const Vec3d& l) {
     const Vec3d a = Vec3d(strands.positions[segment]) - origin, b = Vec3d(strands.positions[segment + 1]) - origin;
     const double radius = 0.5001 * double(std::max(strands.widths[segment], strands.widths[segment + 1]));

@@ -1,4 +1,4 @@
-// How many times a ray crosses strands. Each entry into a strand is one crossing, for any number of segments.
+// Crossings of a ray with strands. Each entry into a strand is one crossing, for any number of segments.
 #pragma once
 
 #include <cstdint>

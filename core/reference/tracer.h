@@ -16,15 +16,15 @@ namespace hairbake {
 /// Average transmittance of each of `vertices` over `directions`, in [0, 1], in the order of `vertices`.
 ///
 /// vertices:   indices of the strands' points; fastest when neighbours in the list are neighbours in space (packets of
-/// 16
-///             share a direction)
+///             16 share a direction)
 /// directions: unit vectors away from the hair
 ///
 /// The transmittance of a ray is the product of (1 - opacity) over the strands that it crosses, once per crossing and
-/// not per segment or joint. Self exclusion: the vertex's adjacent segments do not count, nor segments that the ray
-/// enters before it has left the vertex's own strand. The transmittance is 0 where the scene's occluder is in the way;
-/// both its sides block, and vertices on its surface start where core/mesh/grounding.h says. The same for any thread
-/// count. Throws Error(cancelled).
+/// not per segment or joint. The vertex's own strand is left out: its adjacent segments do not count, nor segments that
+/// the ray enters before it has left the vertex's own strand. The transmittance is 0 where the scene's occluder is in
+/// the way. Both sides of the occluder block. Rays of vertices on its surface start where core/mesh/grounding.h says.
+/// The same for any thread count.
+/// Throws Error(cancelled).
 std::vector<float> trace_transmittance(const StrandScene& scene, std::span<const std::uint32_t> vertices,
                                        std::span<const Vec3d> directions, Progress& progress);
 

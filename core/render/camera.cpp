@@ -21,8 +21,8 @@ double tangent_of_half(double fov_deg) {
     return std::tan(fov_deg * pi / 360);
 }
 
-/// The distance from the middle of a box at which the eye sees all its corners: a corner (x, y, z) in the camera's axes is
-/// in the picture when |x| <= (d - z) tangent aspect and |y| <= (d - z) tangent.
+/// The distance from the middle of a box at which the eye sees all its corners. A corner (x, y, z) in the camera's axes
+/// is in the picture when |x| <= (d - z) tangent aspect and |y| <= (d - z) tangent.
 double framing_distance(const Camera& camera, const Vec3d& low, const Vec3d& high, const Vec3d& target, double aspect) {
     constexpr double margin = 1.04;
     double distance = 0;

@@ -35,8 +35,8 @@ struct OrbitSettings {
 Camera orbit_camera(const OrbitSettings& settings, const Vec3f& bounds_min, const Vec3f& bounds_max, double aspect);
 
 /// A camera at `eye` that looks at `target`; `up` is upwards in the picture.
-/// Throws Error(usage) where they give no direction (eye at the target, up along the view) or the field of view is not 1
-/// to 150 degrees.
+/// Throws Error(usage) where they give no direction (eye at the target, up along the view) or the field of view is not
+/// 1 to 150 degrees.
 Camera look_at(const Vec3d& eye, const Vec3d& target, const Vec3d& up, double fov_deg);
 
 }  // namespace hairbake

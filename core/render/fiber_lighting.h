@@ -64,9 +64,9 @@ std::unique_ptr<FiberLighting> directional_lighting(const DirectionalTransmittan
 ///                  T = guess everywhere
 ///   lights         the environment and the fibre model
 ///   light_samples  lights drawn for each lobe at every point
-/// For each lobe, lights are drawn (stratified) with the probability of the energy that they would send through that
-/// lobe if nothing blocked them. Each sends a shadow ray by the tracer's own rules from one of the segment's two
-/// vertices. The vertex is drawn as well, so that the mean is linear between them as A is. Unbiased.
+/// For each lobe, lights are drawn (stratified) in proportion to the energy that they would send through that lobe if
+/// nothing blocked them. Each sends a shadow ray by the tracer's own rules from one of the segment's two vertices. The
+/// vertex is drawn as well, so that the mean is linear between them as A is. Unbiased.
 std::unique_ptr<FiberLighting> reference_lighting(VertexRays rays, const VertexTransmittance& guess,
                                                   const LightSum& lights, int light_samples);
 

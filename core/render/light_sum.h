@@ -18,9 +18,9 @@ using LobeSums = std::array<Vec3d, most_lobes>;
 /// The lights of an environment in blocks of light_block; the last block is filled up with lights of no flux.
 ///
 /// Sums are in single precision, with an error of about 1e-5 of the sum. The lights are those of the exact maps: texels
-/// gathered at flux centroids (light_set.h), which agree with the sum over every pixel to 0.05 % of the largest value:
-/// one picture point needs thousands of lights instead of millions of pixels. Refers to the model, which must outlive
-/// it. Immutable after construction: thread-safe.
+/// gathered at flux centroids (light_set.h). Their sum agrees with the sum over every pixel to 0.05 % of the largest
+/// value, and one picture point needs thousands of lights instead of millions of pixels. Refers to the model, which
+/// must outlive it. Immutable after construction: thread-safe.
 class LightSum {
 public:
     LightSum(const LightSet& lights, const FiberModel& model);
@@ -34,11 +34,11 @@ public:
     /// Kernels of one block's lights.
     void evaluate(std::size_t block, const FiberView& view, KernelBlock& kernels) const;
 
-    /// Adds flux times kernel of one block; with `transmittance` ([light_block], or null) times that as well.
+    /// Adds flux times kernel of one block, multiplied by `transmittance` ([light_block]) unless that is null.
     void add(std::size_t block, const KernelBlock& kernels, const float* transmittance, LobeSums& sums) const;
 
-    /// Energy of one light through one lobe: the sum over red, green and blue of flux times kernel. For the lights of
-    /// one block, [light_block], and their sum.
+    /// Energy of each light of one block through one lobe: the sum over red, green and blue of flux times kernel;
+    /// [light_block]. And the sum of these energies.
     void energies(std::size_t block, const KernelBlock& kernels, std::size_t lobe, float* energy) const;
     double energy(std::size_t block, const KernelBlock& kernels, std::size_t lobe) const;
 

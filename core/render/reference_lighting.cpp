@@ -12,7 +12,8 @@ namespace {
 
 double sum_of(const Vec3d& v) { return v.x + v.y + v.z; }
 
-/// Energy that every light would send through one lobe if nothing blocked it; lights are drawn in proportion to it.
+/// The energy that every light would send through one lobe if nothing blocked it. Lights are drawn in proportion to
+/// this energy.
 class LightWeights {
 public:
     LightWeights(const LightSum& lights, std::size_t lobe)
@@ -33,7 +34,7 @@ public:
         for (std::size_t i = 0; i < light_block; ++i) kernel_[first + i] = {kernel[0][i], kernel[1][i], kernel[2][i]};
     }
 
-    /// The color of the light that arrives from `light` through the lobe, of any length but 0.
+    /// The color of the light that arrives from `light` through the lobe, in any unit but not 0.
     Vec3d color(std::size_t light) const {
         const Vec3d flux(lights_.flux(light));
         return colored_ ? flux * Vec3d(kernel_[light]) : flux;
@@ -60,7 +61,8 @@ public:
     }
 
 private:
-    /// The light of the block at `rest` of its weight; the last light with weight where rounding leaves a rest.
+    /// The light of the block where the sum of the weights passes `rest`. Where rounding leaves a rest, the last light
+    /// with a weight.
     std::size_t find(std::size_t block, double rest) const {
         const float* weight = &weight_[block * light_block];
         std::size_t last = 0;
@@ -112,8 +114,9 @@ public:
     }
 
 private:
-    /// Estimates the sum of flux * kernel * T over the lights. A drawn light stands for its color over its energy times
-    /// the total energy; that color times `guess` is replaced by its known mean, the unblocked sum.
+    /// Estimates the sum of flux * kernel * T over the lights. A drawn light counts with its color divided by its
+    /// energy, times the total energy. Of T, only the difference from `guess` is sampled; the sum with T = guess is
+    /// known: guess times the unblocked sum.
     Vec3d arriving(const LightWeights& weights, const Vec3d& unblocked, const StrandPoint& point, double guess,
                    Random& random) const {
         const double total = weights.total();

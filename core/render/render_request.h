@@ -12,7 +12,7 @@
 
 namespace hairbake {
 
-/// How the light on a strand is found (fiber_lighting.h). Each mode after the first leaves out one approximation.
+/// The way to find the light on a strand (fiber_lighting.h). Each mode after the first leaves out one approximation.
 enum class ShadingMode {
     baked,        ///< A(x) (Kd D(t) + Ks S(t, theta')) from the maps, as at run time
     brute,        ///< A(x) times the sum over every light of the environment: no maps
@@ -36,7 +36,7 @@ inline constexpr std::array directional_names{
     EnumName{Directional::bent_cone, "bent-cone"},
 };
 
-/// Hair and surface. The defaults are a light brown; its strands send on six tenths of the light diffusely.
+/// Hair and surface. The defaults are a light brown whose strands scatter six tenths of the light diffusely.
 struct RenderLook {
     double albedo = 0.6;                           ///< Kd = albedo * color / pi^2, 0 to 1
     std::array<double, 3> color{0.78, 0.52, 0.3};  ///< linear RGB, 0 to 1 each
@@ -47,8 +47,8 @@ struct RenderLook {
 struct RenderRequest {
     std::optional<std::string> result;  ///< result folder; without it the bake runs in memory
     /// Without result: the bake. Hair and environment are given; the channels transmittance and tangent of the mode
-    /// baked need no environment. With result: `hair`, `environment` and `occluder` are the places of the files that it
-    /// was baked from (default: its transmittance.hair, and the paths in its manifest); the other fields are not used.
+    /// baked need no environment. With result: only `hair`, `environment` and `occluder` are used. They are the places
+    /// of the files that the result was baked from (default: its transmittance.hair, and the paths in its manifest).
     BakeRequest bake;
     std::optional<std::string> mesh;         ///< OBJ file shown with the hair
     std::optional<std::string> camera_file;  ///< JSON (camera_json.h), instead of `orbit`
@@ -58,7 +58,7 @@ struct RenderRequest {
     Directional directional = Directional::automatic;
     bool transmittance = true;  ///< false: A = 1 (baked and brute)
     bool background = true;     ///< false: black
-    int light_samples = 16;     ///< of each lobe at every hit of `reference`, 1 to 65536
+    int light_samples = 16;     ///< drawn for each lobe at every hit in mode reference, 1 to 65536
     FrameSettings frame{640, 640, 16, 1, Channel::beauty};
 };
 

@@ -71,7 +71,7 @@ private:
         }
     }
 
-    /// Linear between the vertices; of the segment itself where the strand turns back between them.
+    /// The tangent, linear between the vertices. Where their tangents cancel, it is the direction of the segment.
     Vec3d tangent_at(const StrandPlace& place) const {
         const std::uint32_t v = place.vertex;
         const Vec3d between = Vec3d(scene_.tangents[v]) * (1 - place.u) + Vec3d(scene_.tangents[v + 1]) * place.u;

@@ -28,8 +28,8 @@ struct DirectionalTransmittance {
 };
 
 /// T over directions as a bent cone: A / share inside the cone and 0 outside, so that the mean over the sphere is A.
-/// `share` = (1 - cos(half-angle)) / 2 is the cone's part of the sphere. The border is a linear ramp in the cosine, which
-/// keeps the mean. Where A > share, T inside is 1 and the mean is less than A.
+/// `share` = (1 - cos(half-angle)) / 2 is the cone's part of the sphere. The border is a linear ramp in the cosine,
+/// which keeps the mean. Where A > share, T inside is 1 and the mean is less than A.
 class BentCone {
 public:
     /// From A and the vector A |b| axis, |b| = (1 + cos(half-angle)) / 2. Both are means over directions (of T and of T

@@ -134,7 +134,7 @@ Field choice(std::string path, Names<Enum> names, At at) {
             }};
 }
 
-/// By the enum's own table of names.
+/// A choice by the enum's own table of names.
 template <class Enum, std::size_t count, class At>
 Field choice(std::string path, const std::array<EnumName<Enum>, count>& table, At at) {
     Names<Enum> names;
@@ -148,7 +148,7 @@ inline Field moved(Field field, std::string first_path) {
     return field;
 }
 
-/// A field that came after the first version, which did what `first_value` says.
+/// A field that the first version did not have. Its behaviour was that of `first_value`.
 inline Field added(Field field, Json first_value) {
     field.first_value = std::move(first_value);
     return field;

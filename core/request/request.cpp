@@ -78,7 +78,7 @@ void check_environment(const EnvironmentSettings& settings) {
     for (const double factor : settings.tint) check_range("environment_settings.tint", factor, 0, 1e6);
 }
 
-/// Of the chosen model alone.
+/// Checks the parameters of the chosen model alone.
 void check_fiber(const FiberSettings& settings) {
     for (const FiberNumber& number : fiber_numbers)
         if (number.model == settings.model) check_range(path_of(number), number.of(settings), number.low, number.high);
@@ -116,7 +116,7 @@ void check_outputs(const BakeRequest& request) {
         check_choice("outputs", *output, output_formats());
         if (std::find(outputs.begin(), output, *output) != output) refuse("outputs", *output + " twice", "each once");
     }
-    // Known before the bake, so said before it.
+    // This is known before the bake, so it is refused here.
     if (request.hair && request.wants("vdb") && request.transmittance.method != TransmittanceMethod::volume)
         refuse("outputs", "vdb with a transmittance.method that has no density grid", "vdb with the method volume");
 }

@@ -13,8 +13,8 @@
 
 namespace hairbake {
 
-/// What to bake. At least one of `hair` and `environment` is given: hair alone bakes transmittance, environment alone
-/// maps. The defaults here are the defaults everywhere (command line, HTTP, schema).
+/// Inputs, settings and outputs of a bake. At least one of `hair` and `environment` is given: hair alone bakes
+/// transmittance, environment alone maps. The defaults here are the defaults everywhere (command line, HTTP, schema).
 struct BakeRequest {
     std::optional<std::string> hair;         ///< path of a hair model
     std::optional<std::string> environment;  ///< path of an environment: a file, or a folder or pattern of six

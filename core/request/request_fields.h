@@ -18,11 +18,11 @@ struct RequestField {
     std::function<Json(const BakeRequest&)> get;
     std::function<void(BakeRequest&, const Json&)> set;  ///< throws Error(usage) for a value of the wrong type
 
-    /// Where the first version of hairbake had the field, if elsewhere. Requests may still name it so, and the text
-    /// that keys are made of always does: a field that moves changes no key.
+    /// The place of the field in the first version of hairbake, if elsewhere. Requests may still name it there. The
+    /// text that keys are made of always has it there, so a field that moves changes no key.
     std::string first_path = {};
-    /// Of a field that came after the first version: the value that means what the first version did. With this value
-    /// the field is left out of keys: a field that is added changes no key.
+    /// For a field that came after the first version: the value with which hairbake behaves as the first version did.
+    /// Keys leave the field out at this value, so a field that is added changes no key.
     std::optional<Json> first_value = {};
 };
 

@@ -95,7 +95,7 @@ private:
     std::set<const RequestField*> set_;
 };
 
-/// `path` is the field that it is for.
+/// Reads `text` as JSON, or as plain text where it is not JSON. `path` is the field that gets the value.
 Json json_or_text(const std::string& text, const std::string& path) {
     Json value = Json::parse(text, nullptr, false);
     if (value.is_discarded()) return text;

@@ -17,8 +17,8 @@ std::string to_json(const BakeRequest& request, int indent = 2);
 /// Returns a warning for each field that `text` names by its deprecated place of the first version
 /// ("irradiance.rotation_deg" for environment_settings.rotation_deg).
 /// Throws Error(usage) naming the field, what was found and what is allowed, for broken JSON, JSON of more than 64
-/// levels, an unknown field, a field given at both of its places, or a wrong type; then nothing is changed. Ranges are
-/// validate()'s.
+/// levels, an unknown field, a field given at both of its places, or a wrong type; then nothing is changed. validate()
+/// checks the ranges.
 std::vector<std::string> merge_json(BakeRequest& request, std::string_view text, const std::string& source);
 
 /// Sets one field by its path: set_field(request, "transmittance.method", "trace").

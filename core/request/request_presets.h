@@ -17,10 +17,11 @@ struct Preset {
 /// All presets, in the order in which a person should meet them.
 std::span<const Preset> presets();
 
-/// What the preset is for, in one sentence.
+/// The purpose of the preset, in one sentence.
 std::string preset_description(const Preset& preset);
 
-/// Takes the preset's fields over into `request`. Throws Error(usage) naming the presets there are.
+/// Takes the preset's fields over into `request`.
+/// Throws Error(usage) naming the presets there are.
 void apply_preset(BakeRequest& request, std::string_view name);
 
 /// config/request.schema.json (JSON Schema draft-07): the one schema of command line, service and OpenAPI document.

@@ -1,8 +1,8 @@
-// The stages of a bake: what each reads, the keys by which its results are known, and the phases of its time.
+// The stages of a bake: their inputs and settings, the keys of their results, and the phases of their time.
 //
 // A stage is the unit of work that has a key, is queued, stored and used again. It is a function of input files and
-// settings, never of another stage's files. One more stage is a row of the table in stages.cpp and a row of the table
-// in core/stages/stage_table.cpp.
+// settings, never of another stage's files. A new stage is a row of the table in stages.cpp and a row of the table in
+// core/stages/stage_table.cpp.
 #pragma once
 
 #include <map>
@@ -34,7 +34,8 @@ struct Stage {
     std::span<const Phase> phases;               ///< of the stage itself, without the reading of inputs
     bool (*asked_for)(const BakeRequest&);
     bool of_first_version;  ///< has a line in every bake's id, also where it does not run
-    /// The block that the key's text of settings is without, as the first version had it; empty for none.
+    /// The block whose fields stand at the top level in the key's text of settings, as in the first version; empty for
+    /// none.
     std::string_view bare_block;
 };
 
@@ -56,23 +57,24 @@ using InputDigests = std::map<std::string, std::string, std::less<>>;
 /// Keys of stages by the stage's name.
 using StageKeys = std::map<std::string, std::string, std::less<>>;
 
-/// SHA-256 of exactly what the stage reads: its name and algorithm, the digests of its files, and its settings. Where
-/// files lie is in no key. Fields of later versions are left out at the value that means the first version's behaviour.
+/// SHA-256 of exactly what the stage reads: its name and algorithm, the digests of its files, and its settings. Paths
+/// of files are in no key. Fields of later versions are left out at the value that means the first version's behaviour.
 /// Of the block `fiber`, only the chosen model's parameters count.
 std::string stage_key(const Stage& stage, const InputDigests& digests, const BakeRequest& request);
 
 /// SHA-256 of the keys of the stages that run, the set of outputs, and output_format.
 std::string bake_id(const StageKeys& keys, const BakeRequest& request);
 
-/// The request that runs this stage alone: the stage's inputs and settings, and those of the outputs in which it writes
-/// files, sorted; defaults elsewhere. Requests that differ only in what the stage does not read give the same one.
+/// The request that runs this stage alone: the stage's inputs and settings, and the outputs in which it writes files,
+/// sorted by name. All other fields have their defaults. Requests that differ only in fields that the stage does not
+/// read give the same request.
 BakeRequest request_alone(const Stage& stage, const BakeRequest& request);
 
 /// The phases of a bake of these stages, in order: inputs are read when the first stage needs them; "write" is last.
 /// Shares sum to 1 and are rough.
 std::vector<Phase> planned_phases(std::span<const Stage* const> stages, const BakeRequest& request);
 
-/// How far the whole is, in [0, 1], at `fraction` of the phase `name`; 0 for a phase that is not planned.
+/// The finished share of the whole, in [0, 1], at `fraction` of the phase `name`; 0 for a phase that is not planned.
 double fraction_of_whole(std::span<const Phase> phases, std::string_view name, double fraction);
 
 }  // namespace hairbake

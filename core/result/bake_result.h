@@ -23,7 +23,7 @@ struct HairFacts {
     Vec3f bounds_min, bounds_max;  ///< of the points, model units
 };
 
-/// What is known of a mesh that was read.
+/// Facts of a mesh that was read.
 struct MeshFacts {
     std::size_t positions = 0, triangles = 0;
     MeshTopology topology;
@@ -38,7 +38,7 @@ struct InputFacts {
     std::optional<EnvironmentMap> environment;  ///< without its pixels
 };
 
-/// What differs between two runs of the same request; everything else is the same bit for bit.
+/// The figures that differ between two runs of the same request. Everything else is the same bit for bit.
 struct Measured {
     std::map<std::string, double> timings_s;  ///< wall seconds of each phase that ran
     std::uint64_t peak_memory_bytes = 0;      ///< of the process, as the kernel counts resident memory
@@ -50,7 +50,7 @@ struct BakeResult {
     std::string id;                ///< bake_id()
     std::vector<StagePart> parts;  ///< of the stages that ran, in the order of stages()
     InputFacts inputs;
-    std::optional<HairModel> hair;      ///< what the writers need of the inputs
+    std::optional<HairModel> hair;      ///< for the writers
     std::vector<std::string> warnings;  ///< of inputs, stages and output, for the person who asked for the bake
     Measured measured;
 

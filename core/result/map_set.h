@@ -18,7 +18,8 @@ struct MapLobe {
     std::vector<MapStatistics> statistics;  ///< of each cube, or empty
 
     bool has_slices() const { return !theta_prime_deg.empty(); }
-    /// Of a cube's file, without its ending: "diffuse", "specular_07" (as many digits as the last needs, two at least).
+    /// Name of a cube's file, without its ending: "diffuse", "specular_07". The number has as many digits as the last
+    /// one needs, two at least.
     std::string file_name(std::size_t cube) const;
     /// For people and metadata: "diffuse", "specular 7".
     std::string label(std::size_t cube) const;

@@ -1,4 +1,4 @@
-// What one stage of a bake gives.
+// The result of one stage of a bake.
 #pragma once
 
 #include <memory>
@@ -15,17 +15,17 @@
 
 namespace hairbake {
 
-/// How the transmittance came about.
+/// Facts about how the transmittance was computed.
 struct TransmittanceFacts {
     int directions = 0;
-    double voxel_size = 0;              ///< effective h in model units; 0 but for the method volume
-    std::uint64_t occupied_voxels = 0;  ///< 0 but for the method volume
+    double voxel_size = 0;              ///< effective h in model units; 0 for other methods than volume
+    std::uint64_t occupied_voxels = 0;  ///< 0 for other methods than volume
     std::uint64_t degenerate_segments = 0;
     std::optional<ErrorBar> error_bar;           ///< with reference_vertices > 0
     std::shared_ptr<const DensityGrid> density;  ///< extinction of the sweep; null unless density.vdb is asked for
 };
 
-/// How the maps came about: IrradianceMaps without its maps (irradiance_maps.h says what each means).
+/// Facts about how the maps were computed: IrradianceMaps without its maps (irradiance_maps.h says what each means).
 struct IrradianceFacts {
     std::vector<Vec3d> environment_sh;
     int environment_sh_bands = 0;
@@ -36,7 +36,7 @@ struct IrradianceFacts {
     double predicted_error_diffuse = 0, predicted_error_specular = 0;
 };
 
-/// One more stage has a struct of facts here, and a function in core/output/manifest_stages.cpp that describes it.
+/// A new stage adds a struct of facts here, and a function in core/output/manifest_stages.cpp that describes it.
 using StageFacts = std::variant<TransmittanceFacts, IrradianceFacts>;
 
 struct StagePart {

@@ -1,4 +1,4 @@
-// Named arrays of a result: so many numbers for each vertex of the hair, or for each position of the receiver.
+// Named arrays of a result: a row of numbers for each vertex of the hair, or for each position of the receiver.
 //
 // Writers, reader, manifest, comparison and preview loop over arrays. Only the table in vertex_array.cpp knows names.
 #pragma once
@@ -24,7 +24,7 @@ enum class ArrayLayout {
     coefficients  ///< independent numbers: shape [V, n], n attributes of one component, numbered from 0
 };
 
-/// What an array means.
+/// The meaning of an array.
 struct ArrayKind {
     std::string_view name;     ///< of the array and of its file NAME.npy
     std::string_view meaning;  ///< one line for people
@@ -37,8 +37,8 @@ struct ArrayKind {
 /// All kinds, in the order in which a result lists them.
 std::span<const ArrayKind> array_kinds();
 
-/// The kinds that other code needs by what they are: A, T(x, l) as spherical harmonics, the bent cone, and the shadow on
-/// the receiver.
+/// The kinds that other code asks for by their meaning: A, T(x, l) as spherical harmonics, the bent cone, and the
+/// shadow on the receiver.
 const ArrayKind& average_transmittance_kind();
 const ArrayKind& transmittance_sh_kind();
 const ArrayKind& bent_cone_kind();

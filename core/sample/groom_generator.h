@@ -9,7 +9,7 @@
 
 namespace hairbake {
 
-/// How many strands grow, and how.
+/// Number and style of the strands.
 struct GroomSettings {
     GroomStyle style = GroomStyle::straight;
     std::uint64_t vertices = 1'500'000;      ///< exact total, 0 to 1e9; a total of 1 gives one strand of one point
@@ -22,9 +22,9 @@ struct GroomSettings {
 /// Throws Error(usage) unless `number` is 1 to 4.
 GroomSettings paper_model(int number);
 
-/// Strands of 10 to 30 cm, root first, in centimetres, Y up, the face towards +Z. Each is about 0.01 cm wide at the root
-/// and tapers to 60 % of that (thickness array). The roots lie on the surface of head_shape.h, and no vertex lies inside
-/// it. The same settings give the same model for any thread count.
+/// Strands of 10 to 30 cm, root first, in centimetres, Y up, the face towards +Z. Each is about 0.01 cm wide at the
+/// root and tapers to 60 % of that (thickness array). The roots lie on the surface of head_shape.h, and no vertex lies
+/// inside it. The same settings give the same model for any thread count.
 /// Throws Error(usage) naming the field for a value out of range.
 HairModel generate_groom(const GroomSettings& settings);
 

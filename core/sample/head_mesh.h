@@ -9,7 +9,8 @@ namespace hairbake {
 
 /// A closed mesh in centimetres: the shape of head_shape.h, with its normals, cut into `rings` bands of latitude (4 to
 /// 2048) and twice as many of longitude. The vertices lie on the shape; with the default the facets stay within 0.02 cm
-/// of it on the scalp. Throws Error(usage) when `rings` is out of range.
+/// of it on the scalp.
+/// Throws Error(usage) when `rings` is out of range.
 TriangleMesh make_head_mesh(int rings = 96);
 
 /// Writes Wavefront OBJ (v, vn, f).

@@ -21,7 +21,7 @@ constexpr Ellipsoid parts[] = {
 
 double square(double x) { return x * x; }
 
-/// Where the ray from the origin along `direction` leaves the ellipsoid.
+/// Distance at which the ray from the origin along `direction` leaves the ellipsoid, in lengths of `direction`.
 double exit_distance(const Ellipsoid& e, const Vec3d& direction) {
     const Vec3d d(direction.x / e.radii.x, direction.y / e.radii.y, direction.z / e.radii.z);
     const Vec3d c(e.centre.x / e.radii.x, e.centre.y / e.radii.y, e.centre.z / e.radii.z);

@@ -73,7 +73,7 @@ void discard_sample_parts(const std::filesystem::path& folder) noexcept {
     try {
         for (const char* name : sample_files) discard_part(folder / name);
     } catch (const std::exception&) {
-        // Only memory for the names can be missing; the parts then stay.
+        // Only memory for the names of the files can be missing. The unfinished files then stay.
     }
 }
 

@@ -37,7 +37,7 @@ Look look_of(GroomStyle style) {
 /// The random properties of one strand or clump guide.
 struct Character {
     double length;     ///< cm along the path
-    double lift;       ///< cm above the skin that the strand comes to lie at
+    double lift;       ///< cm above the skin where the strand comes to lie
     double stiffness;  ///< how slowly gravity bends it, in cm
     Vec3d lean;        ///< random tilt of the first direction
     double curl_phase, curl_radius, curl_pitch;
@@ -116,8 +116,8 @@ Clump find_clump(std::uint64_t seed, const Vec3d& root_point) {
     return nearest;
 }
 
-/// Draws the path towards the clump's guide, more and more from root to tip; less where the two part by more than a few
-/// centimetres (on either side of the parting), or the blend would cross the head.
+/// Draws the path towards the clump's guide, more and more from root to tip. It draws less where the two part by more
+/// than a few centimetres (on either side of the parting), because the blend would cross the head.
 void draw_together(std::span<Vec3d> path, std::span<const Vec3d> guide, double share) {
     double apart = 0;
     for (std::size_t i = 0; i < path.size(); ++i) apart = std::max(apart, length(guide[i] - path[i]));
@@ -163,7 +163,7 @@ void grow_strand(GroomStyle style, std::uint64_t seed, std::uint64_t index, cons
     const Character guide_character = draw_character(look, stream_of(seed, clump_stream, ~clump.id), clump.root);
     Character character = draw_character(look, random, root);
     random = stream_of(seed, strand_stream, ~index);
-    // Hairs of a clump wind together, with some play; one in thirty goes its own way.
+    // Hairs of a clump wind together, with some play; one in thirty winds by itself.
     const bool flyaway = random.next() < 1.0 / 30;
     if (!flyaway) character.curl_phase = guide_character.curl_phase + random.next(-0.6, 0.6);
     if (!flyaway) character.curl_pitch = guide_character.curl_pitch;

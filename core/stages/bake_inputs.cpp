@@ -17,7 +17,7 @@ namespace hairbake {
 namespace {
 
 /// Watches files from their digest to the end of their reading. OpenImageIO reads pictures in an order of its own, so
-/// that a digest cannot be made of the same pass; this finds out whether both passes saw the same bytes.
+/// the digest needs another pass over the file. This class finds out whether both passes saw the same bytes.
 class UnchangedFiles {
 public:
     explicit UnchangedFiles(std::vector<std::filesystem::path> files) : files_(std::move(files)) {
@@ -37,7 +37,7 @@ private:
     std::vector<std::optional<FileIdentity>> identities_;
 };
 
-/// Which of its edges make a mesh something else than a closed surface, for a warning.
+/// The edges that keep a mesh from being a closed surface, in words for a warning.
 std::string shell_of(const MeshTopology& topology) {
     return std::to_string(topology.open_edges) + " of its " + std::to_string(topology.edges) +
            " edges lie in one triangle only, " + std::to_string(topology.irregular_edges) +

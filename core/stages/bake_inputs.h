@@ -25,14 +25,14 @@ public:
     BakeInputs(const BakeRequest& request, PhaseClock& clock) : request_(request), clock_(clock) {}
 
     /// Reads the files that the stage names, as far as the request has them, in the phases read_hair and
-    /// read_environment; what is read already is not read again.
+    /// read_environment; files that are read already are not read again.
     void read_for(const Stage& stage);
 
-    // What read_for() has read. Null or a failed precondition for what the request does not name.
+    // The results of read_for(). An input that the request does not name is null, or fails a precondition.
     const HairModel& hair() const { return *hair_; }
     const TriangleMesh* occluder() const { return occluder_ ? &*occluder_ : nullptr; }
     const TriangleMesh* receiver() const { return receiver_ ? &*receiver_ : nullptr; }
-    /// Whether one file is both.
+    /// Whether receiver and occluder are one file.
     bool receiver_is_occluder() const;
     const EnvironmentMap& environment() const { return *environment_; }
 
@@ -43,11 +43,11 @@ public:
     /// Warnings about what was read since the last call.
     std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
 
-    /// Gives back the memory of what none of the `stages` reads, as far as the result does not need it.
+    /// Frees the inputs that none of the `stages` reads and that the result does not need.
     void release_unless_read_by(std::span<const Stage* const> stages);
 
-    /// Facts of what was read. The environment's pixels are kept in them only when `keep_pixels` is set. The environment
-    /// is gone from this object afterwards.
+    /// Facts of what was read. The environment's pixels are kept in them only when `keep_pixels` is set. The
+    /// environment is gone from this object afterwards.
     InputFacts take_facts(bool keep_pixels);
     std::optional<HairModel> take_hair() { return std::move(hair_); }
 

@@ -1,4 +1,4 @@
-// Environment in memory to irradiance maps in memory.
+// Computes irradiance maps from an environment, both in memory.
 #include "core/stages/stage_table.h"
 
 namespace hairbake {

@@ -1,4 +1,4 @@
-// Runs the phases of a bake: tells their names to the progress and measures their time.
+// Runs the phases of a bake: reports their names to the progress and measures their time.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// The code of each stage. core/request/stages.h says what a stage is and reads; this is the table of what it does.
+// The code of each stage. core/request/stages.h describes the stages; the table here has their functions.
 #pragma once
 
 #include "core/request/request.h"
@@ -8,14 +8,14 @@
 
 namespace hairbake {
 
-/// What a stage works with.
+/// The input of a stage.
 struct StageContext {
     const BakeRequest& request;
     BakeInputs& inputs;  ///< holds what the stage's row names as inputs
     PhaseClock& clock;
 };
 
-/// Reads the stage's inputs and runs it.
+/// Reads the inputs of the stage and runs the stage.
 /// Throws Error as bake().
 StagePart run_stage(const Stage& stage, StageContext& context);
 

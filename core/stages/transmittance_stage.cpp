@@ -1,4 +1,4 @@
-// Hair in memory to A (and what else the request asks for) in memory, and A's error bar.
+// Computes A, the other arrays that the request asks for, and A's error bar from the hair in memory.
 #include <numeric>
 #include <optional>
 
@@ -12,7 +12,7 @@
 namespace hairbake {
 namespace {
 
-/// By tracing the true strands.
+/// Transmittance by tracing the true strands.
 Transmittance trace_all(const StrandScene& scene, const TransmittanceScene& baked,
                         const TransmittanceSettings& settings, Progress& progress) {
     std::vector<std::uint32_t> vertices(scene.strands().vertex_count());
@@ -33,7 +33,7 @@ Transmittance trace_all(const StrandScene& scene, const TransmittanceScene& bake
     return transmittance;
 }
 
-/// By the method of the request; `scene` is made where that is to trace.
+/// Runs the method of the request. Makes `scene` where that method is trace.
 Transmittance transmittance_of(const TransmittanceScene& baked, const TransmittanceSettings& settings,
                                std::optional<StrandScene>& scene, Progress& progress) {
     if (settings.method == TransmittanceMethod::trace) {

@@ -65,7 +65,7 @@ Json statistics(std::span<const float> first, std::span<const float> second) {
             {"rms_over_largest", largest > 0 ? rms / largest : rms}};
 }
 
-/// How many cube maps an array [..., 6, n, n, 3] with leading axes holds; 0 for any other shape.
+/// Number of cube maps in an array [..., 6, n, n, 3] with leading axes; 0 for any other shape.
 std::size_t maps_in(std::span<const std::size_t> shape) {
     if (shape.size() < 5) return 0;
     const auto leading = shape.first(shape.size() - 4), cube = shape.last(4);
@@ -73,7 +73,7 @@ std::size_t maps_in(std::span<const std::size_t> shape) {
     return std::accumulate(leading.begin(), leading.end(), std::size_t{1}, std::multiplies<>());
 }
 
-/// What the report says of one array.
+/// The report's entry about one array.
 struct Comparison {
     bool same = false;
     Json entries = Json::object();

@@ -1,4 +1,4 @@
-// How far two results are apart.
+// Measures the difference between two results.
 #pragma once
 
 #include <filesystem>

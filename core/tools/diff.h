@@ -1,4 +1,4 @@
-// How far two pictures are apart.
+// Measures the difference between two pictures.
 #pragma once
 
 #include <filesystem>
@@ -17,8 +17,10 @@ namespace hairbake {
 ///   channels, from black (0) over blue, red and yellow to white (`scale` and more), NaN in green. A labelled scale
 ///   stands below.
 /// - scale: > 0; without one, the largest difference, rounded up to 1, 2 or 5 times a power of ten. The report states
-/// it. Throws Error(bad_input) naming the file when it is no such picture or has another size. Throws Error(usage) for
-/// a scale that is not positive or a picture with another ending. Throws Error(cancelled).
+///   it.
+/// Throws Error(bad_input) naming the file when it is no such picture or has another size.
+/// Throws Error(usage) for a scale that is not positive or a picture with another ending.
+/// Throws Error(cancelled).
 std::string diff(const std::filesystem::path& first, const std::filesystem::path& second,
                  const std::optional<std::filesystem::path>& picture, std::optional<double> scale, Progress& progress);
 

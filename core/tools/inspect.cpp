@@ -29,7 +29,7 @@ Json range_of(std::span<const float> values, float otherwise) {
     return {{"minimum", *low}, {"maximum", *high}};
 }
 
-/// Why a bake that takes the widths from the file will be refused; empty where it will not.
+/// The reason why a bake that takes the widths from the file will be refused; empty where it will not be.
 std::string width_warning(const HairModel& model) {
     const auto missing = [](float width) { return !(width > 0); };
     const std::vector<float>& widths = model.thickness;

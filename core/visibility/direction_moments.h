@@ -11,8 +11,8 @@
 
 namespace hairbake {
 
-/// The weights of moments: sums over directions w_k of T_k times 1, x, y, z, Y_4(w) .. Y_15(w). (The first four give
-/// the harmonics Y_0 .. Y_3, which are constants times 1, y, z, x, and the bent cone.)
+/// The weights of moments. A moment is a sum over the directions w_k of T_k times a weight: 1, x, y, z, Y_4(w) ..
+/// Y_15(w). (The first four give the harmonics Y_0 .. Y_3, which are constants times 1, y, z, x, and the bent cone.)
 class DirectionMoments {
 public:
     /// sh_bands: 0 to 4. Without bands and cone the only moment is the mean.
@@ -45,9 +45,9 @@ void sh_of_moments(std::span<const float> moments, std::span<float> sh);
 /// average:  A, mean of T
 /// mean_t_w: mean of T w
 ///
-/// (0, 0, 0), pi where nothing is blocked (A >= 1 - 2^-20): the mean of the direction set itself, which is not exactly
-/// zero, must not give an axis. (0, 0, 0), 0 where everything is blocked (A = 0). Where T is the same in all directions
-/// but below 1, rounding errors and the direction set decide the axis, and the half-angle is nearly pi.
+/// (0, 0, 0), pi where nothing is blocked (A >= 1 - 2^-20): the mean of the direction set itself is not exactly zero,
+/// and it must not give an axis. (0, 0, 0), 0 where everything is blocked (A = 0). Where T is the same in all
+/// directions but below 1, rounding errors and the direction set decide the axis, and the half-angle is nearly pi.
 std::array<float, 4> bent_cone_of_moments(float average, const Vec3f& mean_t_w);
 
 /// The means of P points.

@@ -30,7 +30,7 @@ std::vector<Vec3d> stratified(int count, std::uint64_t seed) {
     if (side * side != count)
         throw Error(ErrorKind::usage,
                     "transmittance.directions is " + std::to_string(count) +
-                        ", but the stratified set needs a square number (9, 25, 64, 100, ...)",
+                        "; allowed are square numbers (9, 25, 64, 100, ...) with the stratified set",
                     "transmittance.directions");
     Random random(seed);
     std::vector<Vec3d> directions;

@@ -10,9 +10,9 @@
 
 namespace hairbake {
 
-/// A sparse float grid "density": the trace of the extinction tensors over the voxel size. That is opacity * width *
-/// strand length per volume, in 1 / model unit. Voxel (i, j, k) of GridFrame has index (i, j, k); leaves are the
-/// bricks. The grid's transform places voxel centres in model space. OpenVDB's transforms take no voxels below
+/// A sparse float grid "density": the trace of the extinction tensors divided by the voxel size. That is opacity *
+/// width * strand length per volume, in 1 / model unit. Voxel (i, j, k) of GridFrame has index (i, j, k); leaves are
+/// the bricks. The grid's transform places voxel centres in model space. OpenVDB's transforms take no voxels below
 /// about 1.5e-5 units; then the metadata voxel_size and first_voxel_centre give the place. Immutable; may be read from
 /// several threads.
 class DensityGrid {

@@ -56,8 +56,8 @@ std::vector<ReadSet> group_readers(std::span<const SweepReader* const> readers) 
     return sets;
 }
 
-/// Walks along one axis that may run at the same time, for any machine: each thread has sums of its own, 4 bytes for
-/// each point and component. With many components fewer walks run, so that the sums take at most 512 bytes a point.
+/// The most walks along one axis that run at the same time, on any machine. Each thread has sums of its own, 4 bytes
+/// for each point and component. With many components fewer walks run, so that the sums take at most 512 bytes a point.
 std::size_t most_walks(std::span<const ReadSet> sets) {
     std::size_t components = 1;
     for (const ReadSet& set : sets) {
@@ -131,7 +131,7 @@ void sweep_group(const Axis& axis, std::span<const Vec3d> directions, const Dire
     sweep(axis.layout, directions, group, stops, worker.sweep);
 }
 
-/// Sweeps all groups of one axis and adds what they bring to `sums`. Calls swept(n) after every n directions.
+/// Sweeps all groups of one axis and adds their sums to `sums`. Calls swept(n) after every n directions.
 void sweep_axis(const Axis& axis, std::span<const Vec3d> directions, std::span<const DirectionGroup> groups,
                 std::size_t walks, const Progress& progress, const std::function<void(std::size_t)>& swept,
                 std::vector<FixedPointSums>& sums) {

@@ -17,7 +17,8 @@ namespace hairbake {
 /// directions: unit vectors away from the hair; readers know them by their index
 /// readers:    may be of any number of point sets
 ///
-/// The same bits for any thread count. Throws Error(out_of_resources), Error(cancelled).
+/// The same bits for any thread count.
+/// Throws Error(out_of_resources), Error(cancelled).
 std::vector<FixedPointSums> sweep_directions(const HairVolume& volume, std::span<const Vec3d> directions,
                                              std::span<const SweepReader* const> readers, Progress& progress);
 

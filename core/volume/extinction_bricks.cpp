@@ -18,9 +18,9 @@ using Tensor = std::array<float, 8>;
 
 /// A strand crosses a ray's way through a voxel at most once. The voxel then lets 1 - f through, not e^-f, where f is
 /// opacity * width * crossing length * sine / h^2. -ln(1 - f) = f (1 + f / 2 + ...). The average of f / 2, weighted
-/// with f, over random lines through a cube is (opacity * width / h) * chord / 2 * (2/3) / (pi/4), where 0.897 is the
-/// cube's mean chord through a random point. With this term the mean over random placements is e^-(mean extinction), as
-/// it must be: E[(1 - f)^n] = e^(-f mean n).
+/// with f, over random lines through a cube is (opacity * width / h) * chord / 2 * (2/3) / (pi/4). There chord = 0.897
+/// is the cube's mean chord through a random point. With this term the mean over random placements is
+/// e^-(mean extinction), as it must be: E[(1 - f)^n] = e^(-f mean n).
 constexpr float disjoint_share = 0.381f;
 
 /// Adds the tensor of a piece: weight * length * t t^T.

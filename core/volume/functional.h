@@ -1,5 +1,5 @@
-// A functional of the transmittance: what a bake keeps of T over all directions at each point, from the sums of the
-// sweep to the arrays of the result.
+// A functional of the transmittance: it turns the sums of T over all directions at each point, which the sweep gives,
+// into arrays of the result.
 #pragma once
 
 #include <memory>

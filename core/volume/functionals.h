@@ -1,4 +1,5 @@
-// The table of the functionals that the volume method knows. For one more: write its file, add a declaration and a row.
+// The table of the functionals that the volume method knows. A new functional is a file of its own, a declaration and a
+// row here.
 #pragma once
 
 #include <array>

@@ -25,7 +25,7 @@ struct NearFieldInput {
     const HairVolume& volume;
     const NearFieldWindow& window;
     std::span<const std::vector<AngularMean>> means;
-    float own_unit;  ///< exponent for one side of the own strand, over opacity * width
+    float own_unit;  ///< exponent for one side of the own strand, divided by opacity * width
 };
 
 }  // namespace hairbake
@@ -138,7 +138,7 @@ HWY_INLINE MeanValues<M> exponents_of(const NearFieldInput& input, std::size_t p
     return exponents;
 }
 
-/// Corrects up to M means. Where there are fewer the last ones repeat the first and are thrown away.
+/// Corrects up to M means. Where there are fewer the last ones repeat the first and are dropped.
 template <std::size_t M>
 void correct_means(const NearFieldInput& input, std::size_t first, std::size_t last, const Neighborhood& near,
                    std::span<std::vector<float>> corrected) {

@@ -25,15 +25,17 @@ constexpr std::size_t kMostMeans = 4;
 /// volume: made of `strands`
 /// means:  [means][V], as swept, each in the order of volume.sorted.vertices; at most kMostMeans
 ///
-/// The corrected average is A exp(F_grid - F_exact + own), at most 1. F is the optical depth within the window
-/// q(d) = (1 - d^2 / r^2)^2, r = 0.5 voxels, as mean over the directions with the weight T(l) / A:
+/// The corrected average is A exp(F_grid - F_exact + own), at most 1. F is the optical depth within the window q(d) =
+/// (1 - d^2 / r^2)^2, r = 0.5 voxels. It is a mean over the directions with the weight T(l) / A. There are two such
+/// depths:
 /// - F_exact of the strand pieces, in closed form along each piece. The vertex's adjacent segments are left out. The
 ///   distance is never less than half of the width.
 /// - F_grid of the voxels.
 /// `own` removes the part of the vertex's own strand that the grid holds outside the window: half of it at a strand's
 /// end, nothing at a lone point. See docs/math.md, "The near field".
 ///
-/// The same bits for any thread count. Throws Error(cancelled).
+/// The same bits for any thread count.
+/// Throws Error(cancelled).
 std::vector<std::vector<float>> correct_near_field(const StrandGeometry& strands, const HairVolume& volume,
                                                    std::span<const std::vector<AngularMean>> means,
                                                    const Progress& progress);

@@ -9,7 +9,7 @@
 namespace hairbake {
 namespace {
 
-// Integrals of (1 - z^2 / r^2)^2 / z^2 times the probability that a point at z from a uniformly placed vertex lies in
+// Integrals of (1 - z^2 / r^2)^2 / z^2 times a probability: that a point at z from a uniformly placed vertex lies in
 // the voxel offset by none, one, two or three axes. Taken 1, 6, 12 and 8 times they add up to 4 pi r 8 / 15.
 constexpr double kByAxes[4] = {2.6392203, 0.1068050, 0.0056982, 0.0003255};
 

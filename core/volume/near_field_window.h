@@ -8,16 +8,16 @@
 
 namespace hairbake {
 
-/// q(d) = (1 - d^2 / r^2)^2 for d < r. Offset (i, j, k) from the vertex's voxel has the index
-/// o = 9 (i + 1) + 3 (j + 1) + (k + 1). weight[o] is the integral of q(d) / d^2 over voxel o, averaged over the
-/// vertex's place in its voxel; for the vertex's own voxel times pi / 4, the mean sine. Arrays are padded with zeros.
+/// q(d) = (1 - d^2 / r^2)^2 for d < r. Offset (i, j, k) from the vertex's voxel has the index o = 9 (i + 1) + 3 (j + 1)
+/// + (k + 1). weight[o] is the integral of q(d) / d^2 over voxel o, averaged over the vertex's place in its voxel. The
+/// weight of the vertex's own voxel is multiplied by pi / 4, the mean sine. Arrays are padded with zeros.
 struct NearFieldWindow {
     /// r in voxels. With half a voxel only the adjacent cells of half a voxel matter.
     static constexpr float radius = 0.5f;
     static constexpr std::size_t offsets = 27, padded = 32;
 
-    /// -ln A of a lone straight thin strand on the grid after the correction, over opacity * width / h, averaged over
-    /// directions and places of the strand. tests/core/volume/lone_strands_test.cpp derives it.
+    /// -ln A of a lone straight thin strand on the grid after the correction, divided by opacity * width / h, averaged
+    /// over directions and places of the strand. tests/core/volume/lone_strands_test.cpp derives it.
     static constexpr float own_strand_beyond = 0.352f;
 
     /// Share of the correction for a vertex of average transmittance A: none below `dark`, all above `light`. In a

@@ -44,7 +44,7 @@ std::int32_t texel_of(const HairVolume& volume, const SliceLayout& layout, const
            (at(layout.axis_u) & 7);
 }
 
-/// How many points of each chunk lie in each row.
+/// Number of points of each chunk in each row.
 std::array<RowCounts, kChunks> count_rows(const SliceLayout& layout, const PointSet& points) {
     std::array<RowCounts, kChunks> counts;
     for (RowCounts& chunk : counts) chunk.assign(static_cast<std::size_t>(layout.slices) + 2, 0);
@@ -64,7 +64,7 @@ void place_rows(std::array<RowCounts, kChunks>& counts, PointSlots& slots) {
     }
 }
 
-/// Makes every slot one of padding.
+/// Makes every slot a padding slot.
 void resize(const PointSet& points, PointSlots& slots) {
     const std::size_t count = slots.begin.back();
     for (auto* array : {&slots.u, &slots.v, &slots.s}) array->assign(count, 0);

@@ -29,7 +29,8 @@ struct SliceLayout {
     std::vector<std::uint16_t> tensors;  ///< bits of half floats [(tile * 6 + component) * 64 + texel]
 };
 
-/// `axis`: 0, 1 or 2. Throws Error(cancelled).
+/// `axis`: 0, 1 or 2.
+/// Throws Error(cancelled).
 SliceLayout make_slice_layout(const HairVolume& volume, int axis, const Progress& progress);
 
 }  // namespace hairbake

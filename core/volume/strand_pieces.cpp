@@ -84,8 +84,9 @@ void find_occupied_bricks(const Counts& pieces, const Counts& vertices, SortedSt
     }
 }
 
-/// Turns each count into the place where the chunk writes its first item of the brick; returns where each occupied
-/// brick begins. Throws Error(out_of_resources).
+/// Turns each count into the place where the chunk writes its first item of the brick. Returns the place where each
+/// occupied brick begins.
+/// Throws Error(out_of_resources).
 std::vector<std::uint32_t> counts_to_places(Counts& counts, const std::vector<std::uint32_t>& bricks) {
     std::vector<std::uint32_t> begin;
     std::uint64_t sum = 0;
@@ -96,7 +97,7 @@ std::vector<std::uint32_t> counts_to_places(Counts& counts, const std::vector<st
     if (sum >= std::uint64_t{1} << 32)
         throw Error(ErrorKind::out_of_resources,
                     "the strands cross " + std::to_string(sum) +
-                        " voxels, 4294967295 is the most: ask for fewer voxels (transmittance.voxels)",
+                        " voxels; allowed are at most 4294967295. Ask for fewer voxels (transmittance.voxels)",
                     "transmittance.voxels");
     begin.push_back(static_cast<std::uint32_t>(sum));
     return begin;

@@ -1,5 +1,4 @@
-// A functional of the transmittance, for the sweep: how many sums it keeps at a point, and how it adds to
-// them.
+// A functional of the transmittance, for the sweep: how many sums it keeps at a point, and how it adds to them.
 #pragma once
 
 #include <array>
@@ -24,7 +23,7 @@ struct SweepBlock {
     std::size_t count = 0;                      ///< a multiple of PointSlots::group, at most most_slots
     std::span<const std::uint32_t> directions;  ///< indices into the direction set, at most kSweepLanes
     /// [direction of the walk][slot - first]: T in [0, 1], 0 where the point's occluder blocks the direction. Each
-    /// begins at a multiple of 64 bytes. Where the walk has fewer directions the last ones hold anything.
+    /// begins at a multiple of 64 bytes. Where the walk has fewer directions, the last ones are not set.
     std::array<const float*, kSweepLanes> t{};
 };
 

@@ -31,7 +31,7 @@ struct NamedArray {
     std::vector<float> values;
 };
 
-/// A(x) at every vertex and how it came about. The caller measures time and memory.
+/// A(x) at every vertex, with facts about its computation. The caller measures time and memory.
 struct Transmittance {
     std::vector<float> average;  ///< [V], A in [0, 1], file order
     /// [V * bands^2], c_i = (4 pi / N) sum over k of T_k Y_i(w_k) in the order l*l + l + m; with sh_bands > 0.

@@ -70,8 +70,8 @@ void VertexMoments::answer(const FixedPointSums& sums, std::span<std::vector<flo
 }
 
 /// The near-field correction multiplies T of every direction by the factor that it gave A. So every moment of a vertex
-/// is multiplied by that factor, and bent cones stay as swept. (What lies within half a voxel lies on all sides in the
-/// mean. RMSE of band 1 at 200,000 curly vertices: 0.0638 with the factor, 0.0665 with the moments left alone, 0.0699
+/// is multiplied by that factor, and bent cones stay as swept. (On average the strands within half a voxel lie on all
+/// sides. RMSE of band 1 at 200,000 curly vertices: 0.0638 with the factor, 0.0665 with the moments left alone, 0.0699
 /// with the correction spread evenly so that no T exceeds 1. Bands 2 and 3 hardly differ.)
 void VertexMoments::answer_directional(const FixedPointSums& sums, Transmittance& result) const {
     const auto coefficients = static_cast<std::size_t>(sh_bands_ * sh_bands_);

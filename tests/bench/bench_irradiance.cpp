@@ -1,7 +1,7 @@
 // Accuracy and speed of the irradiance stage, as plain tables.
 //
-//   bench_irradiance [--quick | --speed]   (--quick: an eleventh of the texels, no 4096 x 2048 maps; --speed: only
-//   those)
+//   bench_irradiance [--quick | --speed]
+//                    (--quick: an eleventh of the texels, no 4096 x 2048 maps; --speed: only those maps)
 //
 // Times are the best of some runs in this process on all cores; the whole accuracy table takes some minutes on two.
 #include <OpenImageIO/imageio.h>

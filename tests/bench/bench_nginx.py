@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""The service behind nginx, measured: slow clients, polling, downloads. Prints figures, as ratios to nginx alone in the same run.
+"""Measures the service behind nginx: slow clients, polling, downloads. Prints ratios to nginx alone in the same run.
 
-bench_nginx.py [seconds of each measurement, default 5] [MB of the download, default 500]. HAIRBAKE_PROGRAMS is the folder of the
-programs.
+bench_nginx.py [seconds of each measurement, default 5] [MB of the download, default 500]. HAIRBAKE_PROGRAMS is the
+folder of the programs.
 """
 import http.client
 import os
@@ -26,7 +26,7 @@ AUTHORITY = f"Host: localhost\r\nAuthorization: Bearer {TOKEN}\r\n"
 
 
 def drip(port, count, stop):
-    """Keeps `count` connections that send a byte a second, half of them of a head, half of an upload's body."""
+    """Keeps `count` connections that send a byte a second: half of them send a head, half the body of an upload."""
     heads = [b"GET /healthz HTTP/1.1\r\nX-Slow: ",
              f"PUT /v1/blobs/{'0' * 64} HTTP/1.1\r\n{AUTHORITY}Content-Length: 1000000\r\n\r\n".encode()]
     selector, connections = selectors.DefaultSelector(), []
@@ -39,7 +39,7 @@ def drip(port, count, stop):
 
     connections = [connect(i) for i in range(count)]
     while not stop.wait(1):
-        for key, _ in selector.select(0):  # nginx gave it up: it comes again
+        for key, _ in selector.select(0):  # nginx closed it: open it again
             selector.unregister(key.fileobj)
             key.fileobj.close()
             connections[key.data] = connect(key.data)
@@ -53,7 +53,7 @@ def drip(port, count, stop):
 
 
 def healthz_milliseconds(port, seconds):
-    """Times of single requests, every other one on a new connection."""
+    """Times of single requests. Every other request uses a new connection."""
     times, end, kept = [], time.monotonic() + seconds, http.client.HTTPConnection("127.0.0.1", port)
     while time.monotonic() < end:
         connection = kept if len(times) % 2 else http.client.HTTPConnection("127.0.0.1", port)
@@ -104,7 +104,7 @@ def compare(name, unit, ours, nginx, rounds, target):
 
 
 def processor_seconds():
-    """All, and those that the host gave to others while something here wanted to run."""
+    """All seconds, and the stolen ones: a process here could run, but the host ran another guest."""
     values = [int(word) for word in Path("/proc/stat").read_text().split("\n", 1)[0].split()[1:9]]
     return sum(values) / os.sysconf("SC_CLK_TCK"), values[7] / os.sysconf("SC_CLK_TCK")
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Figures of the real daemon with a thousand grooms: done requests posted again, and a new lighting for all of them.
+"""Measures the real daemon with a thousand grooms: posts done requests again, and asks for new lighting of all grooms.
 
 bench_service.py [submit] [rebake]; both without arguments. HAIRBAKE_PROGRAMS is the folder of the programs.
 """
@@ -18,7 +18,7 @@ SUBMISSIONS, GROOMS = 10_000, 1_000
 
 
 def exchange(port, request):
-    """One request on a connection of its own, as the daemon wants it; the whole reply."""
+    """Sends one request on a connection of its own, as the daemon requires. Returns the whole reply."""
     with socket.create_connection(("127.0.0.1", port)) as connection:
         connection.sendall(request)
         reply = b""
@@ -37,7 +37,7 @@ def post(path, body):
 
 
 def times_of(port, requests):
-    """Of each request, one after the other; all are answered with 200."""
+    """Seconds of each request, one after the other. Every reply must be 200."""
     seconds = []
     for request in requests:
         begin = time.perf_counter()
@@ -54,7 +54,7 @@ def show(what, seconds):
 
 
 def bake_grooms(d, sky):
-    """GROOMS different ones under one sky; their requests by the bakes' ids."""
+    """Bakes GROOMS different grooms under one sky. Returns their requests by the ids of the bakes."""
     begin = time.perf_counter()
     requests = [quick_request(d.put(hair_bytes(strands=4, points=4, seed=seed)), sky) for seed in range(GROOMS)]
     bakes = {}
@@ -70,8 +70,8 @@ def bake_grooms(d, sky):
 
 
 def bench_submit(d, bakes, _):
-    """In random order, as a build farm asks. A view that was made once is kept in memory until the database changes, hence the
-    first time of each bake is shown alone, too."""
+    """Posts in random order, as a build farm does. A view is kept in memory until the database changes, so the first
+    time of each bake is also shown alone."""
     bodies = {bake: json.dumps(request) for bake, request in bakes.items()}
     order = random.Random(1).choices(list(bakes), k=SUBMISSIONS)
     show("GET /healthz", times_of(d.port, [get("/healthz")] * 2000))

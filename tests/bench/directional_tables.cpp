@@ -16,7 +16,7 @@
 namespace hairbake::bench {
 namespace {
 
-/// What harmonics and bent cones cost beside A alone: all in turn, best of three.
+/// Time of harmonics and bent cones beside the time of A alone. All run in turn, best of three.
 void directional_times(const StrandGeometry& strands) {
     struct Row {
         const char* name;
@@ -61,7 +61,7 @@ struct ConeErrors {
     double axis = 0, half_angle = 0;
 };
 
-/// Of the bent cones where at least a tenth of the sky is seen: elsewhere few rays decide.
+/// Errors of the bent cones at vertices that see at least a tenth of the sky. Elsewhere too few rays decide the cone.
 ConeErrors cone_errors(const Transmittance& baked, const DirectionalMeans& traced,
                        std::span<const std::uint32_t> vertices) {
     double angle = 0, axis = 0;

@@ -1,4 +1,4 @@
-// What this machine could do at best: the floors that the sweep's time is held against.
+// Lower bounds of this machine, with which the sweep's time is compared.
 #pragma once
 
 #include <cstddef>

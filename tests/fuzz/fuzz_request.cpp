@@ -1,4 +1,5 @@
-// Any bytes as a request: they are refused as a usage error, or taken, and the request that is written then reads the same.
+// Any bytes as a request. They are refused as a usage error, or taken; a taken request is written and then reads the
+// same.
 #include <cstdint>
 #include <string_view>
 

@@ -1,5 +1,6 @@
-// A result folder whose files are any bytes at all: refused as bad input, or read. The first byte says which file the
-// rest is: the manifest, or one of the .npy files beside a manifest that gives its digest, so that its bytes are read.
+// A result folder whose files are any bytes at all: refused as bad input, or read. The first byte names the file that
+// the rest is: the manifest, or one of the .npy files. A .npy file lies beside a manifest that gives its digest, so
+// that its bytes are read.
 #include <array>
 #include <cstdint>
 #include <fstream>

@@ -1,5 +1,5 @@
-// A cube whose faces say which way up they are: for the pictures of the layouts and the tests of every reader and
-// writer of cubes and lat-longs.
+// A cube whose faces show their orientation: for the pictures of the layouts and the tests of every reader and writer
+// of cubes and lat-longs.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@ namespace hairbake {
 
 /// Radiance from a direction (any length but 0). With d scaled so that its largest component is 1, each channel tells
 /// one axis: 1 where the component is above 3/4, 1/16 where it is below -3/4, 1/2 between. Every face, edge and corner
-/// of the cube so has a colour of its own, which follows from the world direction alone: the faces' middles are
+/// of the cube thus has a colour of its own, which follows from the world direction alone: the faces' middles are
 ///   +X (1, .5, .5)  -X (.0625, .5, .5)  +Y (.5, 1, .5)  -Y (.5, .0625, .5)  +Z (.5, .5, 1)  -Z (.5, .5, .0625),
 /// the edge between +X and +Y (1, 1, .5), the corner of +X, -Y and +Z (1, .0625, 1).
 /// Over the middle stand the face's name in white (4, 4, 4) and above it a black arrow, (0, 0, 0), to the top; both are

@@ -1,4 +1,4 @@
-// Draws the README's pictures of the layouts: labelled_cube_pictures FOLDER.
+// Draws the pictures of docs/formats.md: labelled_cube_pictures FOLDER.
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>

@@ -18,8 +18,9 @@ struct Square {
     Vec3d middle, right, down;
 };
 
-// Around +Z, right is +X and down is -Y; each neighbour is bent back by a quarter turn at the common edge: its middle
-// is where the edge pointed, and what pointed there points away from +Z.
+// Around +Z, right is +X and down is -Y. Each neighbour is turned back by a quarter about the common edge: the
+// direction from +Z's middle to that edge is the neighbour's middle, and further in that direction the neighbour goes
+// towards -Z.
 const std::array<Square, 6> horizontal_cross{
     {{1, 1, Z, X, -Y}, {2, 1, X, -Z, -Y}, {3, 1, -Z, -X, -Y}, {0, 1, -X, Z, -Y}, {1, 0, Y, X, Z}, {1, 2, -Y, X, -Z}}};
 const std::array<Square, 6> vertical_cross{

@@ -13,7 +13,7 @@ struct LabelledPicture {
     std::vector<Vec3f> pixels;  ///< [height * width], row 0 on top
 };
 
-/// What lies around the faces of a cross.
+/// The values around the faces of a cross.
 constexpr float outside_the_cross = 0.02f;
 
 /// horizontal_cross, vertical_cross, horizontal_strip or vertical_strip with faces of `face_size`; or gltf, filament or

@@ -12,15 +12,16 @@
 namespace hairbake::testing {
 
 /// For each tangent: D, then S_m for m = 0 .. maps - 1, [tangents * (1 + maps)]: the sum over every texel, in double,
-/// of radiance * exact solid angle * kernel at the texel's centre. Shares only the map's geometry with what it checks:
-/// kernels come from dot products as in docs/math.md, "The Kajiya-Kay kernels", powers of 2 by repeated squaring, others by std::pow.
+/// of radiance * exact solid angle * kernel at the texel's centre. It shares only the map's geometry with the code
+/// under test: kernels come from dot products as in docs/math.md, "The Kajiya-Kay kernels", powers of 2 by repeated
+/// squaring, others by std::pow.
 std::vector<Vec3d> sum_over_pixels(const EnvironmentMap& map, std::span<const Vec3d> tangents, double exponent,
                                    int maps);
 
-/// Root mean square over the tangents' texels, all maps and channels of (baked - truth), over the largest truth.
+/// Root mean square over the tangents' texels, all maps and channels of (baked - truth), divided by the largest truth.
 struct MapError {
     double diffuse = 0, specular = 0, all = 0;
-    double specular_relative = 0;  ///< specular RMS over the specular maps' own root mean square
+    double specular_relative = 0;  ///< specular RMS / the specular maps' own root mean square
 };
 MapError compare(const IrradianceMaps& maps, std::span<const std::size_t> texels, const std::vector<Vec3d>& truth);
 

@@ -1,4 +1,4 @@
-// Uniform media made of random fibres, with probes in them and what the probes must see.
+// Uniform media made of random fibres, with probes in them and the transmittance that is expected there.
 #pragma once
 
 #include <functional>
@@ -8,11 +8,12 @@
 
 namespace hairbake::test_support {
 
-/// Whose transmittance is expected: that of the mean field, thin fibres as extinction, or that of true fibres with
-/// round ends. For these a ray from a point meets as many as have their centre in a known volume (Poisson): optical
-/// depth sigma (1 + w / L) per length for isotropic fibres of length L (mean projected area of a convex body: a quarter
-/// of its surface, pi w (L + w) / 4), and a point is inside a fibre with the optical depth sigma w (volume over
-/// projection), where A = 0.
+/// The medium whose transmittance is expected.
+/// - mean_field: thin fibres as extinction.
+/// - fibres: true fibres with round ends. A ray from a point meets the fibres whose centres lie in a known volume;
+///   their number has a Poisson distribution. For isotropic fibres of length L the optical depth per length is sigma (1
+///   + w / L), because the mean projected area of a convex body is a quarter of its surface, pi w (L + w) / 4. A point
+///   is inside a fibre with the optical depth sigma w (volume over projection); there A = 0.
 enum class Truth { mean_field, fibres };
 
 struct Medium {
@@ -29,7 +30,7 @@ Medium parallel_ball_medium(Random& random, const Fibres& fibres, double r, int 
 Medium slab_medium(Random& random, const Fibres& fibres, double h, double width, double z, int probes, Truth truth);
 
 /// Mean over realisations (seeds 1, 2, ...) of the probes' mean of A - expected, and its standard error from their
-/// scatter. What is baked or traced: `evaluate` gives A of the medium's probes.
+/// scatter. `evaluate` bakes or traces: it gives A of the medium's probes.
 struct MeanError {
     double mean = 0, standard_error = 0;
 };

@@ -8,7 +8,7 @@
 
 namespace hairbake::test_support {
 
-/// Positions and normals; nobody asks for a receiver's triangles.
+/// Positions and normals; nothing reads a receiver's triangles.
 inline TriangleMesh receiver_points(const std::vector<std::pair<Vec3d, Vec3d>>& points_and_normals) {
     TriangleMesh mesh;
     for (const auto& [point, normal] : points_and_normals) {

@@ -1,4 +1,4 @@
-// Runs a program as a person would: its exit code and what it printed.
+// Runs a program from the shell: its exit code and its output.
 #pragma once
 
 #include <sys/wait.h>

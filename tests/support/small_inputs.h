@@ -1,4 +1,4 @@
-// Inputs that bake in a moment: a small sample groom and sky in a temporary folder.
+// Inputs that bake quickly: a small sample groom and sky in a temporary folder.
 #pragma once
 
 #include "core/request/request.h"
@@ -7,7 +7,7 @@
 
 namespace hairbake::test_support {
 
-/// Writes the samples when made; they go away with it.
+/// The constructor writes the samples. They are removed with the object.
 class SmallInputs {
 public:
     SmallInputs() {

@@ -18,7 +18,7 @@ class StrandModel {
 public:
     /// Adds a strand; returns the index of its first vertex.
     std::uint32_t add(const std::vector<Vec3d>& points, double width, double opacity = 1);
-    /// Adds strands of one point, which carry no extinction: they only look. Returns the index of the first.
+    /// Adds strands of one point, which carry no extinction: they are probes. Returns the index of the first.
     std::uint32_t add_probes(const std::vector<Vec3d>& points);
     /// Strands of one point at two opposite corners of a box, so that the bounds are at least that box.
     void add_box(const Vec3d& low, const Vec3d& high);

@@ -1,4 +1,4 @@
-// A folder that goes away with its owner.
+// A temporary folder that is removed with its object.
 #pragma once
 
 #include <unistd.h>
@@ -9,7 +9,7 @@
 
 namespace hairbake::test_support {
 
-/// An empty folder of its own for each object, removed with everything in it at the end.
+/// Each object has an empty folder of its own. The folder and everything in it are removed at the end.
 class TemporaryFolder {
 public:
     TemporaryFolder() {

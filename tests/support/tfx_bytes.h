@@ -7,7 +7,7 @@
 
 namespace hairbake::test_support {
 
-/// Where the fields of a TressFX header lie, in bytes.
+/// Offsets of the fields of a TressFX header, in bytes.
 struct TfxOffsets {
     std::size_t header, positions, strand_uv, vertex_uv, thickness, colors;
 };

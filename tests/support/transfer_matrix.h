@@ -10,9 +10,9 @@
 
 namespace hairbake::testing {
 
-/// F_i(t) = sum over every texel of Y_i(w) K(t . w) * solid angle, and w_i = sum of L Y_i * solid angle (equation 10):
-/// returns sum over i < bands^2 of w_i F_i(t) for each tangent. Brute force, in double, the kernel given by the
-/// cosine of the angle to the tangent.
+/// Returns the sum over i < bands^2 of w_i F_i(t) for each tangent t, by brute force in double. F_i(t) is the sum over
+/// every texel of Y_i(w) K(t . w) * solid angle, and w_i is the sum of L Y_i * solid angle (equation 10). `kernel`
+/// gives K from the cosine of the angle to the tangent.
 std::vector<Vec3d> transfer_matrix_map(const EnvironmentMap& map, std::span<const Vec3d> tangents, int bands,
                                        const std::function<double(double cosine)>& kernel);
 

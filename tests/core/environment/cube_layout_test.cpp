@@ -78,7 +78,7 @@ TEST(LabelledCube, ItsColoursTellEveryDirectionOfTheTestApart) {
 }
 
 TEST(LabelledCube, EveryTurnAndMirrorOfAFaceShows) {
-    // The eight symmetries of the square change the face: what the README says of the pictures.
+    // The eight symmetries of the square change the face, as docs/formats.md says of the pictures.
     for (int face = 0; face < cube_faces; ++face) {
         const LabelledPicture picture = labelled_face(face, size);
         std::set<std::vector<float>> pictures;
@@ -143,7 +143,7 @@ TEST(CubeLayout, LatLongMapsOfEveryConventionShowTheSameLabels) {
 
 TEST(CubeLayout, OiiotoolPastesFacesToTheSamePictures) {
     // (--paste takes the foreground below the background on its stack.) Independent of both our tables: faces pasted by
-    // oiiotool at the places that the README's table names, -Z of the vertical cross turned by oiiotool.
+    // oiiotool at the places that the table of docs/formats.md names, -Z of the vertical cross turned by oiiotool.
     const TemporaryFolder folder;
     const auto face = [&](int k) { return (folder / ("face" + std::to_string(k) + ".exr")).string(); };
     for (int k = 0; k < cube_faces; ++k) save(face(k), labelled_face(k, size));

@@ -32,8 +32,8 @@ TEST(LatLong, TexelSolidAnglesSumToTheSphere) {
 }
 
 TEST(LatLong, EachConventionLooksWhereTheDesignSays) {
-    // Design, Conventions: what the centre column looks along and what is right of it. All numbers exact but for cos(90
-    // degrees) = 6e-17.
+    // Direction of the centre column and of the column to its right (docs/math.md, section 1). All numbers are exact
+    // but for cos(90 degrees) = 6e-17.
     struct Expected {
         LatLong convention;
         Vec3d centre, right;

@@ -49,7 +49,7 @@ TEST(DirectionMoments, KeepsWhatTheAnswersNeed) {
 }
 
 TEST(DirectionMoments, HarmonicsAreTheirDefinitionForAnyT) {
-    // c_i = (4 pi / N) sum of T_k Y_i(w_k), as the issue says; floats of at most 4: 1e-6.
+    // c_i = (4 pi / N) sum of T_k Y_i(w_k) (docs/math.md, section 12); floats of at most 4: 1e-6.
     const auto directions = make_directions(DirectionSet::random, 60, 5);
     const auto t = [](const Vec3d& w) { return 0.3 + 0.2 * w.x - 0.1 * w.y * w.z + (w.z > 0.2 ? 0.25 : 0); };
     for (int bands = 1; bands <= 4; ++bands) {

@@ -163,10 +163,10 @@ TEST(Directional, ALoneStrandSeesTheWholeSky) {
 
 TEST(Directional, TurnsWithTheModel) {
     // Turned model, turned coefficients. Voxels and directions lie otherwise then, so both bakes err independently. The
-    // volume method errs by up to 0.016 in A (RMS, README's table; these strands are as wide as its widest, w/h =
-    // 0.27): the two differ by up to 0.023, which is 0.08 in c_0 = 2 sqrt(pi) A, and in no other coefficient is it
-    // more: an error of T at single directions is spread evenly over all coefficients, one common to all is in c_0
-    // alone. A turn the wrong way would differ by sqrt(2) times the coefficients' size.
+    // volume method errs by up to 0.016 in A (RMS, docs/accuracy.md, section 2; these strands are as wide as its
+    // widest, w/h = 0.27). So the two differ by up to 0.023, which is 0.08 in c_0 = 2 sqrt(pi) A. In no other
+    // coefficient is it more: an error of T at single directions is spread evenly over all coefficients, one common to
+    // all is in c_0 alone. A turn the wrong way would differ by sqrt(2) times the coefficients' size.
     const StrandModel model = lopsided_ball();
     const Matrix3 turn = rotation_matrix({25, 140, -70});
     const StrandGeometry straight_up = model.geometry(),

@@ -26,7 +26,7 @@ StrandGeometry lone_strand(Random& random, double width, int segments) {
 }
 
 TEST(Transmittance, OfALoneStraightStrandIsOne) {
-    // Truth: 1. The requirement allows 0.02; what is left over scatters with the strand's place in its voxels (up to
+    // Truth: 1. Allowed is 0.02; what is left over scatters with the strand's place in its voxels (up to
     // about 0.35 w/h) and is one-sided because A is at most 1.
     Random random(1);
     for (const double ratio : {0.02, 0.035, 0.05})
