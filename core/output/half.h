@@ -18,7 +18,7 @@ using Half4 = std::array<Half, 4>;
 
 constexpr float largest_half = 65504;
 
-/// The half nearest to `value`, of two equally near the even one. Infinite above 65,520, NaN for NaN.
+/// The half nearest to `value`, of two equally near the even one. Infinite from 65,520 on, NaN for NaN.
 Half to_half(float value);
 
 /// The scale for values up to `largest` in magnitude:

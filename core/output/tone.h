@@ -8,7 +8,7 @@
 
 namespace hairbake {
 
-/// Stops that bring the brightest tenth of the values to a bright but unclipped tone; 0 where all is black.
+/// Stops that bring the brightest tenth of the values to a bright but unclipped tone; 0 where nine tenths are black.
 double exposure_for(std::vector<float> luminances);
 
 /// Rec. 709 luminance.

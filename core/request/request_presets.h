@@ -10,7 +10,7 @@
 namespace hairbake {
 
 struct Preset {
-    std::string_view name;  ///< "paper", "draft", "final"
+    std::string_view name;  ///< "draft", "final", "paper", "v1"
     std::string_view json;  ///< the file: {"description": text, "request": fields that differ from the defaults}
 };
 

@@ -8,7 +8,7 @@ import unittest
 from harness import PATIENCE, PROGRAMS, Daemon, base64_text, hair_bytes, hdr_bytes, quick_request, sha256
 
 MEGABYTE = 1 << 20
-UPLOAD_MB, GROWTH_MB = 500, 64  # of the first specification
+UPLOAD_MB, GROWTH_MB = 500, 64  # the promise of docs/architecture.md
 PIECE = os.urandom(MEGABYTE)
 
 

@@ -180,7 +180,7 @@ class Restarts(unittest.TestCase):
             child = d.wait_for_worker()
             code, seconds = d.stop()
             self.assertEqual(code, 0)
-            self.assertLess(seconds, 5)  # of the first specification
+            self.assertLess(seconds, 5)  # the promise of docs/architecture.md
             self.assertRaises(ProcessLookupError, os.kill, child, 0)
             d.start()
             d.wait_for_worker()  # it runs again

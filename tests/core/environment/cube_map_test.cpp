@@ -33,7 +33,7 @@ TEST(CubeMap, TexelSolidAnglesSumToTheSphere) {
                 4.506, 5e-4);
 }
 
-TEST(CubeMap, FacesAreOrientedAsTheDesignSays) {
+TEST(CubeMap, FacesAreOrientedAsInOpenGl) {
     // (a, b) = (0.5, 0.25) put into the table of cube_map.h by hand; 1e-15 is rounding of the normalisation.
     const Vec3d expected[] = {{1, -0.25, -0.5}, {-1, -0.25, 0.5}, {0.5, 1, 0.25},
                               {0.5, -1, -0.25}, {0.5, -0.25, 1},  {-0.5, -0.25, -1}};

@@ -31,7 +31,7 @@ TEST(LatLong, TexelSolidAnglesSumToTheSphere) {
     }
 }
 
-TEST(LatLong, EachConventionLooksWhereTheDesignSays) {
+TEST(LatLong, EachConventionLooksWhereItsNameSays) {
     // Direction of the centre column and of the column to its right (docs/math.md, section 1). All numbers are exact
     // but for cos(90 degrees) = 6e-17.
     struct Expected {

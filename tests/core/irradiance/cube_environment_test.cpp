@@ -33,7 +33,7 @@ EnvironmentMap sky_cube(Sky sky, int size, const std::array<double, 3>& rotation
         rotation_deg);
 }
 
-TEST(CubeEnvironment, MapsMeetTheAccuracyOfTheIssue) {
+TEST(CubeEnvironment, MapsAreWithinThePromisedError) {
     // As accuracy_test.cpp has it for lat-long maps: RMS over the largest value <= 0.3 % exact, <= 1 % sh and within
     // its prediction, against the sum over every texel. 110: cells of 1 to 3 texels along an edge.
     const testing::TexelSample sample = testing::sample_texels(8, 13);

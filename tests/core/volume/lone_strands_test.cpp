@@ -170,7 +170,7 @@ TEST(Transmittance, BesideAThinStrandIsRightInTheMeanOverPlaces) {
     }
 }
 
-TEST(Transmittance, OfTwoCrossingThinStrandsIsWithinTheRequirement) {
+TEST(Transmittance, OfTwoCrossingThinStrandsErrsByTwoHundredthsAtMost) {
     // The truth is 1 - asin(r/d)/pi * b/sqrt(b^2 + d^2); 0.02 is what one strand may be off by its own place, and the
     // other adds its own grain (above): 0.03 - that of the other is a tenth where d is 4 voxels.
     Random random(6);
