@@ -1,6 +1,8 @@
 // hairbake rebake
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "clients/cli/commands.h"
@@ -16,7 +18,8 @@ using Json = Server::Json;
 
 struct RebakeOptions {
     ConnectionFlags connection;
-    std::string environment, replaces, name, irradiance, folder;
+    std::string environment, replaces, name, folder;
+    std::map<std::string, std::string> blocks;  ///< JSON objects of the request's blocks that change, by name
     std::vector<std::string> bakes, models;
     int priority = 0;
     bool dry_run = false, wait = false;
@@ -29,7 +32,7 @@ Json body_of(const RebakeOptions& options, const InputFiles& inputs) {
     if (!options.replaces.empty()) body["replaces"] = inputs.reference(options.replaces);
     if (!options.name.empty()) body["name"] = options.name;
     for (const std::string& model : options.models) body["models"].push_back(inputs.reference(model));
-    if (!options.irradiance.empty()) body["irradiance"] = Json::parse(options.irradiance);
+    for (const auto& [block, json] : options.blocks) body[block] = Json::parse(json);
     return body;
 }
 
@@ -39,16 +42,24 @@ void check(const RebakeOptions& options) {
     if (sources != 1)
         throw Error(ErrorKind::usage, "exactly one of --bake, --replaces, --name and --model says what to bake again",
                     "bakes");
-    check_nesting(options.irradiance, "irradiance", ErrorKind::usage, "irradiance");
-    if (!options.irradiance.empty() && !Json::parse(options.irradiance, nullptr, false).is_object())
-        throw Error(ErrorKind::usage, "irradiance is " + options.irradiance + "; allowed is a JSON object",
-                    "irradiance");
+    for (const auto& [block, json] : options.blocks) {
+        check_nesting(json, block, ErrorKind::usage, block);
+        if (!Json::parse(json, nullptr, false).is_object())
+            throw Error(ErrorKind::usage, block + " is " + json + "; allowed is a JSON object", block);
+    }
     check_ids(options.bakes, "bake");
 }
 
-std::string count_words(const Json& counts) {
-    return std::to_string(counts.at("transmittance").get<std::int64_t>()) + " transmittance and " +
-           std::to_string(counts.at("irradiance").get<std::int64_t>()) + " irradiance stages";
+/// "3 transmittance and 1 irradiance stages": of whatever stages the server counts.
+std::string counts_text(const Json& counts) {
+    std::string text;
+    std::size_t left = counts.size();
+    for (const auto& [stage, count] : counts.items()) {
+        text += std::to_string(count.get<std::int64_t>()) + " " + plain(stage);
+        --left;
+        text += left > 1 ? ", " : left == 1 ? " and " : " stages";
+    }
+    return text;
 }
 
 void tell(const RebakeOptions& options, const Json& answer) {
@@ -60,8 +71,8 @@ void tell(const RebakeOptions& options, const Json& answer) {
     const std::string bakes = std::to_string(answer.at("bakes").get<std::int64_t>()) + " bakes";
     if (options.dry_run)
         print_line(bakes + ", " + std::to_string(answer.at("done_bakes").get<std::int64_t>()) +
-                   " of them done: " + count_words(answer.at("reused_stages")) + " are stored, " +
-                   count_words(answer.at("computed_stages")) + " would be computed");
+                   " of them done: " + counts_text(answer.at("reused_stages")) + " are stored, " +
+                   counts_text(answer.at("computed_stages")) + " would be computed");
     else if (options.wait)
         say_note("batch " + id_in(answer, "id") + " of " + bakes);
     else
@@ -108,8 +119,15 @@ void add_rebake_command(CLI::App& app, Action& action) {
     command->add_option("--replaces", options->replaces, "every groom that was baked under this environment");
     command->add_option("--name", options->name, "every groom that was baked under this name of an environment");
     command->add_option("--model", options->models, "these hair models, as they were baked last");
-    command->add_option("--irradiance", options->irradiance, "fields of the block irradiance that change")
-        ->type_name("JSON");
+    for (const char* block : {"irradiance", "environment_settings", "fiber"}) {
+        std::string flag = std::string("--") + block;
+        std::replace(flag.begin(), flag.end(), '_', '-');
+        command
+            ->add_option_function<std::string>(
+                flag, [options, block](const std::string& json) { options->blocks[block] = json; },
+                std::string("fields of the block ") + block + " that change")
+            ->type_name("JSON");
+    }
     command->add_option("--priority", options->priority, "-10 to 10: higher ones are baked first")
         ->check(CLI::Range(-10, 10));
     command->add_flag("--dry-run", options->dry_run, "only tell what is stored and what would be computed");

@@ -18,6 +18,7 @@ from ._http import identifier
 EPILOG = """exit codes: 0 done, 2 usage, 3 bad input, 5 interrupted (the bake goes on on the server), 6 server
 unreachable, 7 refused, 8 bake failed, 9 bake cancelled on the server"""
 Arguments = argparse.Namespace
+LIGHTING_BLOCKS = ("irradiance", "environment_settings", "fiber")  #: of the request: `rebake` may change them
 
 
 class Display:
@@ -187,11 +188,12 @@ def rebake(client: Client, arguments: Arguments, display: Display) -> None:
     which = {name: value for name, value in which.items() if value}
     if len(which) != 1:
         raise UsageError("exactly one of --bake, --replaces, --name and --model says what to bake again", "bakes")
-    if arguments.irradiance:
+    for block in LIGHTING_BLOCKS:
+        text = getattr(arguments, block)
         try:
-            which["irradiance"] = dict(json.loads(arguments.irradiance))
+            which.update({block: dict(json.loads(text))} if text else {})
         except (ValueError, TypeError, RecursionError) as error:
-            raise UsageError(f"irradiance is {arguments.irradiance}; allowed is a JSON object", "irradiance") from error
+            raise UsageError(f"{block} is {text}; allowed is a JSON object", block) from error
     if arguments.dry_run:
         forecast = client.rebake_forecast(arguments.environment, **which)
         return display.line(json.dumps(forecast), "forecast", **forecast)
@@ -261,7 +263,8 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--replaces")
     made.add_argument("--name")
     made.add_argument("--model", action="append")
-    made.add_argument("--irradiance", metavar="JSON")
+    for block in LIGHTING_BLOCKS:
+        made.add_argument(f"--{block.replace('_', '-')}", metavar="JSON")
     made.add_argument("--dry-run", action="store_true")
     made = command(upload, "send files that the server lacks")
     made.add_argument("file", nargs="+")

@@ -204,18 +204,18 @@ class Client:
 
     def rebake(self, environment: PathLike, *, bakes: Optional[Sequence[BakeOrId]] = None,
                replaces: Optional[PathLike] = None, name: Optional[str] = None,
-               models: Optional[Sequence[PathLike]] = None, irradiance: Optional[Mapping[str, Any]] = None,
-               priority: int = 0) -> Batch:
+               models: Optional[Sequence[PathLike]] = None, priority: int = 0,
+               **blocks: Mapping[str, Any]) -> Batch:
         """Bakes grooms again under a new environment; their transmittance is not computed again. Exactly one of
-        `bakes`, `replaces` (an environment), `name` (of an environment) and `models` says which."""
-        return _batch(self._rebake("", environment, bakes, replaces, name, models, irradiance, priority))
+        `bakes`, `replaces` (an environment), `name` (of an environment) and `models` says which. `blocks` are blocks of
+        the request whose fields change: irradiance={...}, environment_settings={...}, fiber={...}."""
+        return _batch(self._rebake("", environment, bakes, replaces, name, models, priority, blocks))
 
     def rebake_forecast(self, environment: PathLike, *, bakes: Optional[Sequence[BakeOrId]] = None,
                         replaces: Optional[PathLike] = None, name: Optional[str] = None,
-                        models: Optional[Sequence[PathLike]] = None,
-                        irradiance: Optional[Mapping[str, Any]] = None) -> Json:
+                        models: Optional[Sequence[PathLike]] = None, **blocks: Mapping[str, Any]) -> Json:
         """What rebake() would do: {"bakes": n, "done_bakes": n, "reused_stages": {...}, "computed_stages": {...}}."""
-        return self._rebake("?dry_run=1", environment, bakes, replaces, name, models, irradiance, 0)
+        return self._rebake("?dry_run=1", environment, bakes, replaces, name, models, 0, blocks)
 
     def batch(self, batch: Union[Batch, str]) -> Batch:
         id = batch.id if isinstance(batch, Batch) else identifier(batch)
@@ -256,7 +256,7 @@ class Client:
 
     def _rebake(self, query: str, environment: PathLike, bakes: Optional[Sequence[BakeOrId]],
                 replaces: Optional[PathLike], name: Optional[str], models: Optional[Sequence[PathLike]],
-                irradiance: Optional[Mapping[str, Any]], priority: int) -> Json:
+                priority: int, blocks: Mapping[str, Mapping[str, Any]]) -> Json:
         body: Json = {"environment": self._reference(environment), "priority": priority}
         if bakes is not None:
             body["bakes"] = [_id(bake) for bake in bakes]
@@ -266,8 +266,7 @@ class Client:
             body["name"] = name
         if models is not None:
             body["models"] = [self._reference(model) for model in models]
-        if irradiance is not None:
-            body["irradiance"] = dict(irradiance)
+        body.update((block, dict(fields)) for block, fields in blocks.items())
         return self._http.json("POST", f"/v1/rebakes{query}", body)
 
 

@@ -149,6 +149,10 @@ class Jobs:
                                url=daemon.url).events
         self.assertEqual(forecast[-1]["reused_stages"], {"transmittance": 1, "irradiance": 0})
         self.assertEqual(forecast[-1]["computed_stages"], {"transmittance": 0, "irradiance": 1})
+        brighter = ["rebake", "--env", dusk, "--bake", bake, "--environment-settings", '{"exposure_stops": 1}',
+                    "--fiber", '{"kajiya_kay": {"exponent": 8}}', "--dry-run"]
+        self.assertIn('"irradiance": 1' if self.command == PYTHON else "0 transmittance and 1 irradiance stages would be computed",
+                      self.run_ok(*brighter, url=daemon.url).out)
         done = self.run_ok("rebake", "--env", dusk, "--replaces", self.sky, "--fetch", "new", url=daemon.url)
         again = first_word(done.out)
         old, new = self.shop.files("old"), self.shop.files(f"new/{again}")
