@@ -17,7 +17,7 @@ export class EditOrders {
 
     /**
      * Whether the edit is in the maps of bake `id`. left: id of the bake on the left when two are shown, else null. An
-     * order counts while its edit is the current one. Beside the bake that was edited it counts after that too.
+     * order counts while its edit is the current one. With the edited bake on the left it counts later too.
      */
     holds_edit(id, left = null) {
         const order = this.#orders.get(id);
