@@ -1,4 +1,4 @@
-// The flags and the checks that all commands share that talk to a service.
+// The flags and checks of the commands that talk to a service.
 #pragma once
 
 #include <functional>

@@ -54,8 +54,8 @@ void take_body(Transfer& transfer, std::span<const std::byte> bytes) {
     transfer.body_bytes += bytes.size();
     if (transfer.body_bytes > transfer.call.most_bytes)
         throw RemoteError(ExitCode::refused, "the server's answer to " + transfer.call.method + " " +
-                                                 transfer.call.path + " is longer than the " +
-                                                 std::to_string(transfer.call.most_bytes) + " bytes that it may have");
+                                                 transfer.call.path + " is too long; allowed are " +
+                                                 std::to_string(transfer.call.most_bytes) + " bytes");
     const bool good = transfer.answer.status >= 200 && transfer.answer.status < 300;
     if (transfer.call.sink && good)
         transfer.call.sink(transfer.answer, bytes);

@@ -106,7 +106,7 @@ void add_rebake_command(CLI::App& app, Action& action) {
         ->type_name("ID");
     command->add_option("--replaces", options->replaces, "every groom that was baked under this environment");
     command->add_option("--name", options->name, "every groom that was baked under the environment of this name");
-    command->add_option("--model", options->models, "these hair models, as they were baked last");
+    command->add_option("--model", options->models, "these hair models, each as in its latest bake");
     command->add_option("--irradiance", options->irradiance, "fields of the block irradiance that change")
         ->type_name("JSON");
     command->add_option("--priority", options->priority, "-10 to 10: higher ones are baked first")

@@ -97,7 +97,8 @@ void add_status_command(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("status", "Show the states of bakes on a service");
     const auto options = std::make_shared<StatusOptions>();
     command->add_option("id", options->ids, "ids of bakes; default: the 20 newest")->type_name("ID");
-    command->add_option("--batch", options->batch, "counts of a batch, as rebake prints it")->type_name("ID");
+    command->add_option("--batch", options->batch, "id of a batch, as rebake prints it: shows its counts")
+        ->type_name("ID");
     command->add_option("--state", options->state, "of the newest, only those in this state")
         ->check(CLI::IsMember({"queued", "running", "done", "failed", "cancelled"}));
     command->add_flag("--json", options->json, "the server's answers, one JSON object per line");

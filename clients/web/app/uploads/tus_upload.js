@@ -3,7 +3,7 @@
 import { is_turned_away, pause, wait_ms_of } from '../retry.js';
 
 const piece = 8 << 20;
-/** The pauses before each retry. After a sent piece the first pause is next again. */
+/** The pauses between retries, in order. A sent piece starts the order again. */
 export const delays_ms = [0, 1000, 2000, 4000, 8000, 15000, 30000, 30000, 30000, 30000];
 
 let library = null;
