@@ -60,7 +60,7 @@ clean_up
 rm -rf "$work"/{store,socket,sample,results} && mkdir -p "$work"/{store,socket,sample,results}
 chown 10001 "$work"/{store,socket,sample}
 
-say "what the images allow"
+say "checking the user and the read-only file systems of the images"
 for image in hairbaked nginx; do
     [[ $(inside "localhost/hairbake-$image" id -u) == 10001 ]] || die "$image runs as another user than hairbake"
     ! inside "localhost/hairbake-$image" touch /etc/x 2>/dev/null || die "the root file system of $image can be written"

@@ -76,9 +76,10 @@ void add_bake_command(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("bake", "Bake transmittance and irradiance maps into a result folder");
     const auto options = std::make_shared<BakeFlags>();
     command->add_option("--hair", options->request.hair, "hair model; alone: transmittance only");
-    add_request_flags(*command, options->request,
-                      "HDR environment: a picture, or a cube's six as a folder or sky_{face}.hdr; alone: irradiance "
-                      "maps only");
+    add_request_flags(
+        *command, options->request,
+        "HDR environment: a picture, or a cube's six faces as a folder or sky_{face}.hdr; alone: irradiance "
+        "maps only");
     command->add_option("--out", options->folder, "result folder: new, empty or an earlier result")->required();
     command->add_option("--threads", options->threads, "threads; 0: one per core")->check(CLI::Range(0, 1024));
     command

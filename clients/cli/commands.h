@@ -9,10 +9,11 @@ class App;
 
 namespace hairbake {
 
-/// What the parsed command line asks for; throws what the command throws.
+/// The work of the parsed command.
+/// Throws the errors of the command.
 using Action = std::function<void()>;
 
-/// Each adds its subcommand to `app`; when that is the one asked for, parsing fills `action`.
+/// Each function adds its subcommand to `app`. When the user gives this subcommand, parsing sets `action`.
 void add_bake_command(CLI::App& app, Action& action);
 void add_info_command(CLI::App& app, Action& action);
 void add_sample_command(CLI::App& app, Action& action);

@@ -19,7 +19,8 @@ void add_diff_command(CLI::App& app, Action& action) {
     command->add_option("first", options->first, "picture")->required()->type_name("A.exr");
     command->add_option("second", options->second, "picture")->required()->type_name("B.exr");
     command->add_option("--out", options->picture, "write the difference in false colours")->type_name("DIFF.png");
-    command->add_option("--scale", options->scale, "difference at the bright end; default: the largest, rounded up");
+    command->add_option("--scale", options->scale,
+                        "difference drawn in the brightest colour; default: the largest, rounded up");
     command->add_flag("--json", options->json, "figures as JSON");
     command->callback([options, &action] {
         action = [options] {

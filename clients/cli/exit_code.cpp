@@ -64,11 +64,10 @@ std::string exit_code_help() {
 std::string remote_exit_code_help() {
     return exit_code_help() +
            "  6  server unreachable: no answer within --patience, or its certificate is not trusted\n"
-           "  7  refused: the server refuses, or answers what is not to be trusted\n"
-           "  8  bake failed: the server tried; the message is the reason\n"
+           "  7  refused: the server refuses, or its answer cannot be trusted\n"
+           "  8  bake failed on the server; the message is the reason\n"
            "  9  bake cancelled: somebody cancelled it on the server\n"
-           "5 leaves a bake running on the server, and what was sent or fetched so far: the same command goes on "
-           "there.\n";
+           "After 5 a bake continues on the server. Files sent or fetched so far are kept: the same command resumes.\n";
 }
 
 Failure current_failure() {

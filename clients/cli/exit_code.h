@@ -21,7 +21,7 @@ enum class ExitCode {
     bake_cancelled = 9
 };
 
-/// A failure that only commands that talk to a service know.
+/// A failure of a command that talks to a service.
 class RemoteError : public Error {
 public:
     RemoteError(ExitCode code, const std::string& message, std::string field = {})
@@ -45,11 +45,12 @@ struct Failure {
     std::string message, field;
 };
 
-/// The exception that is being handled: out of memory and full disks are out_of_resources, what hairbake did not
-/// expect is internal.
+/// The exception that is being handled. Out of memory and full disks are out_of_resources. Unexpected exceptions are
+/// internal.
 Failure current_failure();
 
-/// Runs `work`; with the progress mode "json" its failure is printed as a JSON line too before it goes on upwards.
+/// Runs `work`. With the progress mode "json" it also prints a failure as a JSON line.
+/// Throws the exceptions of `work`.
 void with_json_failures(const std::string& progress_mode, const std::function<void()>& work);
 
 }  // namespace hairbake

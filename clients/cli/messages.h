@@ -1,4 +1,4 @@
-// What the command line says to people, on standard error.
+// Messages of the command line, on standard error.
 #pragma once
 
 #include <string>

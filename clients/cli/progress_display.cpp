@@ -13,7 +13,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// What a display shows.
+/// The values that a display shows.
 struct Reading {
     std::string_view phase;
     double phase_fraction, fraction;
@@ -42,7 +42,7 @@ public:
 
     void report(double phase_fraction) final {
         const std::unique_lock lock(mutex_, std::try_to_lock);
-        if (!lock) return;  // another thread shows something just as new
+        if (!lock) return;  // another thread shows a reading that is as new
         const Clock::time_point now = Clock::now();
         if (now - shown_ < std::chrono::milliseconds(100) && phase_fraction < 1) return;
         shown_ = now;

@@ -22,7 +22,7 @@ struct RenderOptions {
     int threads = 0;
 };
 
-/// Of an enum's table, for CLI11.
+/// The names of an enum's table, for CLI11.
 template <class Enum, std::size_t count>
 CLI::CheckedTransformer by_name(const std::array<EnumName<Enum>, count>& table) {
     std::vector<std::pair<std::string, Enum>> names;
@@ -55,7 +55,8 @@ RenderRequest make_request(const RenderOptions& options) {
         say_warnings(set_field(request.bake, setting.substr(0, sign), setting.substr(sign + 1)));
     }
     if (request.result && (options.preset || !options.settings.empty()))
-        throw Error(ErrorKind::usage, "--preset and --set say how to bake; a result folder is baked already", "set");
+        throw Error(ErrorKind::usage, "--preset and --set are not allowed with a result folder: it is baked already",
+                    "set");
     parse_size(options.size, request.frame);
     if (options.target) request.orbit.target = Vec3d((*options.target)[0], (*options.target)[1], (*options.target)[2]);
     request.transmittance = !options.no_transmittance;
@@ -96,10 +97,11 @@ void add_scene_options(CLI::App& command, RenderOptions& options) {
         ->required()
         ->type_name("FILE")
         ->allow_extra_args(false);
-    command.add_option("--hair", request.bake.hair, "hair model; with a result: where its hair is");
-    command.add_option("--env", request.bake.environment, "HDR environment; with a result: where its environment is");
+    command.add_option("--hair", request.bake.hair, "hair model; with a result: the path of its hair");
+    command.add_option("--env", request.bake.environment,
+                       "HDR environment; with a result: the path of its environment");
     command.add_option("--occluder", request.bake.occluder,
-                       "mesh that stops light; with a result: where its occluder is");
+                       "mesh that blocks light; with a result: the path of its occluder");
     command.add_option("--mesh", request.mesh, "OBJ file shown with the hair (a head)");
     command.add_option("--preset", options.preset, "without a result: preset of the bake");
     command.add_option("--set", options.settings, "without a result: any field of the bake")
@@ -123,7 +125,8 @@ void add_shading_options(CLI::App& command, RenderOptions& options) {
     command.add_flag("--no-background", options.no_background, "black behind the hair");
     command.add_option("--light-samples", request.light_samples, "shadow rays of each kernel at a hit (reference)")
         ->capture_default_str();
-    command.add_option("--albedo", request.look.albedo, "Kd pi^2, times the colour")->capture_default_str();
+    command.add_option("--albedo", request.look.albedo, "Kd pi^2, before it is multiplied by the colour")
+        ->capture_default_str();
     command.add_option("--color", request.look.color, "linear red, green, blue, 0 to 1")
         ->delimiter(',')
         ->capture_default_str();
@@ -136,14 +139,15 @@ void add_shading_options(CLI::App& command, RenderOptions& options) {
 void add_camera_options(CLI::App& command, RenderOptions& options) {
     RenderRequest& request = options.request;
     command.add_option("--size", options.size, "pixels")->type_name("WxH")->capture_default_str();
-    command.add_option("--samples", request.frame.samples, "of a pixel")->capture_default_str();
+    command.add_option("--samples", request.frame.samples, "samples per pixel")->capture_default_str();
     command.add_option("--seed", request.frame.seed, "the same seed gives the same picture")->capture_default_str();
     command.add_option("--azimuth", request.orbit.azimuth_deg, "degrees; 0 looks from +Z, 90 from +X")
         ->capture_default_str();
     command.add_option("--elevation", request.orbit.elevation_deg, "degrees, -90 to 90")->capture_default_str();
     command.add_option("--fov", request.orbit.fov_deg, "vertical field of view, degrees")->capture_default_str();
-    command.add_option("--distance", request.orbit.distance, "from the target; default: all is in the picture");
-    command.add_option("--target", options.target, "x,y,z; default: the middle")->delimiter(',');
+    command.add_option("--distance", request.orbit.distance,
+                       "distance of the eye from the target; default: all hair is in the picture");
+    command.add_option("--target", options.target, "x,y,z; default: the middle of the hair")->delimiter(',');
     command.add_option("--camera", request.camera_file, "JSON: eye, target, up, fov_deg, or the orbit's fields")
         ->type_name("FILE");
     command.add_option("--exposure", options.exposure, "stops for PNG, or auto")->capture_default_str();

@@ -43,11 +43,11 @@ std::string text_of(const std::string& file) {
     std::string text(most + 1, '\0');
     stream.read(text.data(), static_cast<std::streamsize>(text.size()));
     text.resize(static_cast<std::size_t>(stream.gcount()));
-    if (text.size() > most) throw Error(ErrorKind::usage, file + " is longer than a request may be (1 MiB)", "request");
+    if (text.size() > most) throw Error(ErrorKind::usage, file + " is too long; allowed are 1 MiB", "request");
     return text;
 }
 
-/// Of a flag that the method, which later settings may have chosen, does not read.
+/// Warns of a flag that the method does not read; a later setting may have chosen that method.
 void warn_of_unused(const RequestFlags& flags, const BakeRequest& request) {
     if (flags.fields.contains("--sh-bands") && request.irradiance.method == IrradianceMethod::exact)
         say_warning("--sh-bands is not used: irradiance.method is exact; the bands are those of --method sh");
@@ -58,7 +58,7 @@ void warn_of_unused(const RequestFlags& flags, const BakeRequest& request) {
 void add_request_flags(CLI::App& command, RequestFlags& flags, const std::string& environment_help) {
     command.add_option("--env", flags.environment, environment_help);
     command.add_option("--occluder", flags.occluder, "mesh (OBJ) that stops light completely: the head");
-    command.add_option("--receiver", flags.receiver, "mesh (OBJ) that the hair's shadow is baked on as well");
+    command.add_option("--receiver", flags.receiver, "mesh (OBJ) on which the hair's shadow is baked too");
     command.add_option("--preset", flags.preset, "draft, final, paper or v1 (see hairbake presets)");
     command.add_option("--request", flags.request_file, "JSON file with fields of the request");
     for (const FieldFlag& flag : field_flags())

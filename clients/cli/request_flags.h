@@ -14,22 +14,24 @@ class App;
 
 namespace hairbake {
 
-/// What the command line says of a request.
+/// The parts of a request that the command line gives.
 struct RequestFlags {
     std::optional<std::string> hair, environment, occluder, receiver, request_file, preset;
     std::map<std::string, std::string> fields;  ///< flag to value
     std::vector<std::string> settings;          ///< path=value
 };
 
-/// Adds the flags of everything but the hair; `flags` must live as long as `command` parses. `environment_help` says
-/// what --env may be there.
+/// Adds the flags of all fields but the hair; `flags` must live as long as `command` parses. `environment_help` is the
+/// help of --env.
 void add_request_flags(CLI::App& command, RequestFlags& flags, const std::string& environment_help);
 
 /// "Later wins: ..." for the help of a command with these flags.
 std::string request_flags_help();
 
-/// Defaults, then the preset, the request file, the flags and --set: what comes later wins. Throws Error(usage) naming
-/// the field, Error(bad_input) when the request file cannot be read. Warns on standard error of flags without effect.
+/// Takes the defaults, then the preset, the request file, the flags and --set; later ones win. Warns on standard error
+/// of flags without effect.
+/// Throws Error(usage) naming the field.
+/// Throws Error(bad_input) when the request file cannot be read.
 BakeRequest make_request(const RequestFlags& flags);
 
 }  // namespace hairbake

@@ -18,7 +18,7 @@ void add_sample_command(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("sample", "Write a sample groom, a head and three HDR skies");
     const auto options = std::make_shared<Options>();
     SampleSettings& settings = options->settings;
-    command->add_option("folder", options->folder, "where the files go; files of their names are replaced")
+    command->add_option("folder", options->folder, "folder of the files; replaces files of the same names")
         ->required()
         ->type_name("DIR");
     CLI::Option* style = command->add_option("--style", options->style, "straight, wavy or curly");

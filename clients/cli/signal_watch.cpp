@@ -32,13 +32,13 @@ void watch(const std::stop_token& stop, Progress& progress, const std::function<
     for (long waited = 0; waited < patience_ms && !wait_for_signal(look_ms); waited += look_ms)
         if (stop.stop_requested()) return;
     clean_up();
-    _exit(static_cast<int>(ExitCode::cancelled));  // without destructors: other threads are at work
+    _exit(static_cast<int>(ExitCode::cancelled));  // runs no destructors, because other threads still work
 }
 
 }  // namespace
 
 void block_signals() {
-    // A shell starts background jobs with SIGINT ignored: taken back, so that kill -INT stops those too.
+    // A shell starts background jobs with SIGINT ignored. The default is restored, so that kill -INT stops them too.
     signal(SIGINT, SIG_DFL);
     signal(SIGTERM, SIG_DFL);
     signal(SIGPIPE, SIG_IGN);

@@ -1,4 +1,4 @@
-// Ctrl-C and SIGTERM: an orderly stop, and a hard one when that takes too long.
+// Ctrl-C and SIGTERM: an orderly stop, then a hard stop if the orderly one takes too long.
 #pragma once
 
 #include <functional>
@@ -9,7 +9,7 @@
 namespace hairbake {
 
 /// Blocks SIGINT and SIGTERM in this thread and all that it starts later, so that SignalWatch alone receives them;
-/// ignores SIGPIPE and SIGXFSZ, whose failures show as errors of the write. Called first thing in main().
+/// ignores SIGPIPE and SIGXFSZ, whose failures show as errors of the write. Call it at the start of main().
 void block_signals();
 
 /// While it lives, a signal cancels `progress`. When the process still runs 0.8 s later, or a second signal comes,

@@ -3,10 +3,10 @@
 #
 #   bake_step.sh GROOM ENVIRONMENT OUT [further flags of hairbake submit]
 #
-# The farm sets HAIRBAKE_SERVER, and HAIRBAKE_TOKEN_FILE as a secret file. The step can be repeated at any time: what
-# was sent is not sent again, what was baked is not baked again, and what was fetched is not fetched again. Its last
-# line sums it up. Exit codes are those of hairbake: 6 (server unreachable) is worth another try later, 3 and 8 are the
-# groom's fault.
+# The farm sets HAIRBAKE_SERVER, and HAIRBAKE_TOKEN_FILE as a secret file. The step can be repeated at any time:
+# files are not sent again, bakes are not computed again, and results are not fetched again. The last line of its output
+# sums up the work. Exit codes are those of hairbake: after 6 (server unreachable) try again later; 3 and 8 are faults
+# of the groom.
 #
 #   Jenkins         withCredentials([file(credentialsId: 'hairbake', variable: 'HAIRBAKE_TOKEN_FILE')]) {
 #                       sh 'clients/farm/bake_step.sh groom.hair sky.hdr baked' }

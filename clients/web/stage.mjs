@@ -17,7 +17,7 @@ const vendor = {
     'uplot.js': 'uplot/dist/uPlot.esm.js',
     'uplot.css': 'uplot/dist/uPlot.min.css',
     'pico.css': '@picocss/pico/css/pico.min.css',
-    // SHA-256 in pieces, and what it imports by these names
+    // SHA-256 in pieces, and the modules that it imports by these names
     ...Object.fromEntries(['sha2', '_md', '_u64', 'utils'].map(n => [`hashes/${n}.js`, `@noble/hashes/${n}.js`])),
 };
 

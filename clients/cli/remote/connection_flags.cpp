@@ -56,7 +56,7 @@ void add_connection_flags(CLI::App& command, ConnectionFlags& flags) {
         ->type_name("FILE");
     command.add_option("--ca-file", flags.ca_file, "certificates (PEM) to trust instead of the system's")
         ->type_name("FILE");
-    command.add_option("--patience", flags.patience_s, "seconds to go on trying while the server cannot be reached")
+    command.add_option("--patience", flags.patience_s, "seconds of retries while the server cannot be reached")
         ->check(CLI::Range(0.0, 86400.0))
         ->capture_default_str();
     command
@@ -90,13 +90,13 @@ void run_phase(const ConnectionFlags& flags, const ServerOptions& options, const
         work(server);
     } catch (const nlohmann::json::exception& surprise) {
         throw RemoteError(ExitCode::refused,
-                          std::string("the server's answer is not as this program expects: ") + surprise.what());
+                          std::string("the server's answer has an unexpected form: ") + surprise.what());
     }
 }
 
 void check_ids(const std::vector<std::string>& ids, const char* field) {
     for (const std::string& id : ids)
-        if (!is_id(id)) throw Error(ErrorKind::usage, plain(id) + " is not an id as the service gives them", field);
+        if (!is_id(id)) throw Error(ErrorKind::usage, plain(id) + " is not an id of the service", field);
 }
 
 void check_ids_or_batch(const std::vector<std::string>& ids, const std::string& batch, const std::string& command) {

@@ -1,4 +1,4 @@
-// The flags of every command that talks to a service, and what such commands share.
+// The flags and checks of the commands that talk to a service.
 #pragma once
 
 #include <functional>
@@ -25,18 +25,23 @@ struct ConnectionFlags {
 void add_connection_flags(CLI::App& command, ConnectionFlags& flags);
 
 /// Checks the address and reads the token. Warns of a token file that everybody can read and of a token that would go
-/// over the network in the clear. Throws Error(usage), Error(bad_input).
+/// over the network in the clear.
+/// Throws Error(usage) for a wrong address.
+/// Throws Error(bad_input) for a token file that cannot be read or is not a token.
 ServerOptions server_options(const ConnectionFlags& flags);
 
-/// Runs `work` against the server with a progress display of these stages, which is gone when this returns. Throws what
-/// `work` throws; an answer of an unexpected shape is RemoteError(refused).
+/// Runs `work` with the server and a progress display of `phases`, which ends when this returns.
+/// Throws the errors of `work`.
+/// Throws RemoteError(refused) for an answer of an unexpected shape.
 void run_phase(const ConnectionFlags& flags, const ServerOptions& options, const std::vector<Phase>& phases,
                const std::function<void(Server&)>& work);
 
-/// Throws Error(usage) unless all are ids.
+/// Checks that all of `ids` have the form of ids.
+/// Throws Error(usage) otherwise.
 void check_ids(const std::vector<std::string>& ids, const char* field);
 
-/// The same for ids, or one batch's, of which exactly one must be given to `command`.
+/// Checks that `command` has either ids or a batch, and their form.
+/// Throws Error(usage) otherwise.
 void check_ids_or_batch(const std::vector<std::string>& ids, const std::string& batch, const std::string& command);
 
 }  // namespace hairbake

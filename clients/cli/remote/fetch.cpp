@@ -55,7 +55,7 @@ void write_all(std::FILE* stream, std::span<const std::byte> bytes, const fs::pa
         throw std::system_error(errno, std::generic_category(), file.string());
 }
 
-/// 0 when there is no plain file.
+/// Size of the file; 0 when there is no plain file.
 std::uint64_t size_of(const fs::path& file) {
     std::error_code error;
     if (!fs::is_regular_file(fs::symlink_status(file, error))) return 0;
@@ -69,7 +69,7 @@ bool holds(const fs::path& file, const ListedFile& listed) {
            digest_of_file(file) == listed.digest;
 }
 
-/// The files of one bake on their way here.
+/// The fetch of one bake's files.
 class Fetch {
 public:
     Fetch(Server& server, const std::string& id, const fs::path& folder)
@@ -100,7 +100,8 @@ private:
         const HttpAnswer answer = server_.ask(call);
         if (answer.status != 200) refuse(answer);
         if (answer.header("etag") != std::string("\"").append(Digest().add(answer.body).hex()).append("\""))
-            throw RemoteError(ExitCode::refused, "the manifest that came is not the one that its digest names");
+            throw RemoteError(ExitCode::refused,
+                              "the received manifest does not have the digest that the server states");
         return answer.body;
     }
 
@@ -131,12 +132,12 @@ private:
         if (holds(part, file)) return;
         std::error_code ignored;
         fs::remove(part, ignored);
-        if (resumed) return fetch_file(file);  // what was there before may have been at fault
-        throw RemoteError(ExitCode::refused,
-                          file.name + " came with other bytes than its digest " + file.digest + " names");
+        if (resumed) return fetch_file(file);  // the part from an earlier fetch may have been wrong
+        throw RemoteError(ExitCode::refused, "the received " + file.name + " does not have the digest " + file.digest +
+                                                 " of the manifest");
     }
 
-    /// Until the part is as long as listed.
+    /// Receives until the part is as long as listed.
     void fill(const fs::path& part, const ListedFile& file) {
         std::error_code ignored;
         if (!fs::is_regular_file(fs::symlink_status(part, ignored)) || size_of(part) > file.bytes)
@@ -157,7 +158,7 @@ private:
         if (std::fflush(stream.get()) != 0) throw std::system_error(errno, std::generic_category(), part.string());
     }
 
-    /// One answer; `have` grows with what is written.
+    /// Receives one answer; `have` grows with the written bytes.
     void receive(std::FILE* stream, const fs::path& part, const ListedFile& file, std::uint64_t& have) {
         bool begun = false;
         HttpCall call;
@@ -180,12 +181,12 @@ private:
         if (answer.status != 200 && answer.status != 206) refuse(answer);
     }
 
-    /// Whether the answer goes on where the part ends; a whole one starts anew.
+    /// Whether the answer begins where the part ends. A whole answer replaces the part.
     void begin(std::FILE* stream, const fs::path& part, const HttpAnswer& head, std::uint64_t& have) {
         if (head.status != 206) return restart(stream, part, have);
         const std::string expected = "bytes " + std::to_string(have) + "-";
         if (!head.header("content-range").starts_with(expected))
-            throw RemoteError(ExitCode::refused, "the server sends another range than it was asked for");
+            throw RemoteError(ExitCode::refused, "the server sends another range than the requested one");
     }
 
     static void restart(std::FILE* stream, const fs::path& part, std::uint64_t& have) {
@@ -195,7 +196,7 @@ private:
         have = 0;
     }
 
-    /// All parts are here: the folder appears.
+    /// Puts the complete folder in place.
     void move_in(const std::string& manifest, const std::vector<ListedFile>& files) {
         ResultFolder result(folder_);
         for (const ListedFile& file : files) {

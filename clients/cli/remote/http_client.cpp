@@ -14,7 +14,7 @@ constexpr long stall_timeout_s = 120;  // the server digests and syncs a large u
 constexpr long short_call_timeout_s = 300;
 constexpr std::size_t most_header_bytes = 256 << 10;
 
-/// What the callbacks of one call work on.
+/// The data that the callbacks of one call share.
 struct Transfer {
     const HttpCall& call;
     HttpAnswer answer;
@@ -41,7 +41,7 @@ std::string trimmed(const std::string& text) {
 void take_header(Transfer& transfer, const std::string& line) {
     transfer.header_bytes += line.size();
     if (transfer.header_bytes > most_header_bytes)
-        throw RemoteError(ExitCode::refused, "the server's answer has headers without end");
+        throw RemoteError(ExitCode::refused, "the headers of the server's answer are too long");
     if (line.starts_with("HTTP/")) transfer.answer.headers.clear();  // 100 Continue came before
     const std::size_t colon = line.find(':');
     if (colon == std::string::npos) return;
@@ -54,8 +54,8 @@ void take_body(Transfer& transfer, std::span<const std::byte> bytes) {
     transfer.body_bytes += bytes.size();
     if (transfer.body_bytes > transfer.call.most_bytes)
         throw RemoteError(ExitCode::refused, "the server's answer to " + transfer.call.method + " " +
-                                                 transfer.call.path + " is longer than the " +
-                                                 std::to_string(transfer.call.most_bytes) + " bytes that it may have");
+                                                 transfer.call.path + " is too long; allowed are " +
+                                                 std::to_string(transfer.call.most_bytes) + " bytes");
     const bool good = transfer.answer.status >= 200 && transfer.answer.status < 300;
     if (transfer.call.sink && good)
         transfer.call.sink(transfer.answer, bytes);
@@ -71,7 +71,7 @@ std::size_t on_header(char* data, std::size_t, std::size_t size, void* user) {
     });
 }
 
-/// With the handle, to know the status while the body comes.
+/// Holds the handle, so that the status is known while the body arrives.
 struct Receiver {
     Transfer& transfer;
     CURL* easy;
@@ -110,7 +110,7 @@ void set_body(CURL* easy, const HttpCall& call, Transfer& transfer) {
     curl_easy_setopt(easy, CURLOPT_CUSTOMREQUEST, call.method.c_str());
 }
 
-/// What went wrong on the wire and cannot be mended by trying again.
+/// Errors of the connection that a retry does not mend.
 bool is_lasting(CURLcode code) {
     switch (code) {
         case CURLE_UNSUPPORTED_PROTOCOL:
@@ -158,7 +158,7 @@ struct HttpClient::Handles {
         if (!ca_file.empty()) curl_easy_setopt(easy, CURLOPT_CAINFO, ca_file.c_str());
     }
 
-    /// Runs the call that is set up on `easy`. Looks for a cancel every 50 ms.
+    /// Runs the call that is set up on `easy`. Checks for a cancel every 50 ms.
     CURLcode run(const Transfer& transfer, const Progress& progress) {
         curl_multi_add_handle(multi, easy);
         CURLcode result = CURLE_OK;

@@ -45,7 +45,7 @@ std::string reason(const EndedBake& bake) {
     return text;
 }
 
-/// Throws when some are not done.
+/// Throws RemoteError when some are not done.
 void judge(const ConnectionFlags& flags, const std::vector<EndedBake>& bakes) {
     std::vector<const EndedBake*> lost;
     for (const EndedBake& bake : bakes)
@@ -63,7 +63,7 @@ void judge(const ConnectionFlags& flags, const std::vector<EndedBake>& bakes) {
                                 (failed ? "failed" : "were cancelled"));
 }
 
-/// As a shell reads it back.
+/// `text` as one word of a shell command.
 std::string quoted(const std::string& word) {
     const auto plain = [](unsigned char c) { return std::isalnum(c) || std::strchr("_-./:@%+=,", c); };
     if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
@@ -76,8 +76,8 @@ void tell_how_to_go_on(const ConnectionFlags& flags, const ServerOptions& option
     std::string rest = which + " --server " + quoted(options.url);
     if (!flags.token_file.empty()) rest += " --token-file " + quoted(flags.token_file);
     if (!flags.ca_file.empty()) rest += " --ca-file " + quoted(flags.ca_file);
-    say_note("the server goes on baking; \"hairbake wait " + rest + "\" waits again. \"hairbake cancel " + rest +
-             "\" cancels it.");
+    say_note("the bake continues on the server; \"hairbake wait " + rest + "\" resumes the wait. \"hairbake cancel " +
+             rest + "\" cancels it.");
 }
 
 }  // namespace

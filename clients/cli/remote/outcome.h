@@ -1,4 +1,4 @@
-// What a command does with bakes once they are on the server: waits, fetches, tells how it ended.
+// The work of a command on bakes that are on the server: waits for them, fetches them, reports how they ended.
 #pragma once
 
 #include <functional>
@@ -15,17 +15,17 @@ struct Awaited {
     std::string which;  ///< arguments of `hairbake wait` that mean the same bakes
     /// Folder of a bake's result; empty: it is not fetched.
     std::function<std::string(const std::string& id)> folder = [](const std::string&) { return ""; };
-    /// Puts words for people into a message.
+    /// Replaces parts of a message by words for the user, e.g. digests by paths.
     std::function<std::string(std::string)> words = [](std::string text) { return text; };
     std::string remark;  ///< appended to the line of a done bake
 };
 
-/// Waits and fetches; prints one line for each bake that is done (JSON lines with --progress json). Throws
-/// RemoteError(bake_failed) or RemoteError(bake_cancelled) when not all are. When it is interrupted, the bakes go on on
-/// the server, and it says how to go on here and how to cancel them.
+/// Waits and fetches; prints one line for each bake that is done (JSON lines with --progress json). On an
+/// interrupt the bakes continue on the server; a message says how to resume the wait and how to cancel them.
+/// Throws RemoteError(bake_failed) or RemoteError(bake_cancelled) when some are not done.
 void await_bakes(const ConnectionFlags& flags, const ServerOptions& options, const Awaited& awaited);
 
-/// A line on standard output, at once.
+/// Prints a line on standard output and flushes it.
 void print_line(const std::string& line);
 
 /// "3.2 MB".

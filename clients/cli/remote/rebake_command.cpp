@@ -40,8 +40,7 @@ void check(const RebakeOptions& options) {
     const int sources =
         !options.bakes.empty() + !options.replaces.empty() + !options.name.empty() + !options.models.empty();
     if (sources != 1)
-        throw Error(ErrorKind::usage, "exactly one of --bake, --replaces, --name and --model says what to bake again",
-                    "bakes");
+        throw Error(ErrorKind::usage, "exactly one of --bake, --replaces, --name and --model is needed", "bakes");
     for (const auto& [block, json] : options.blocks) {
         check_nesting(json, block, ErrorKind::usage, block);
         if (!Json::parse(json, nullptr, false).is_object())
@@ -117,8 +116,8 @@ void add_rebake_command(CLI::App& app, Action& action) {
     command->add_option("--bake", options->bakes, "id of a bake to repeat; may be given more than once")
         ->type_name("ID");
     command->add_option("--replaces", options->replaces, "every groom that was baked under this environment");
-    command->add_option("--name", options->name, "every groom that was baked under this name of an environment");
-    command->add_option("--model", options->models, "these hair models, as they were baked last");
+    command->add_option("--name", options->name, "every groom that was baked under the environment of this name");
+    command->add_option("--model", options->models, "these hair models, each as in its latest bake");
     for (const char* block : {"irradiance", "environment_settings", "fiber"}) {
         std::string flag = std::string("--") + block;
         std::replace(flag.begin(), flag.end(), '_', '-');
@@ -130,8 +129,8 @@ void add_rebake_command(CLI::App& app, Action& action) {
     }
     command->add_option("--priority", options->priority, "-10 to 10: higher ones are baked first")
         ->check(CLI::Range(-10, 10));
-    command->add_flag("--dry-run", options->dry_run, "only tell what is stored and what would be computed");
-    command->add_flag("--wait", options->wait, "until all bakes have ended");
+    command->add_flag("--dry-run", options->dry_run, "only print what is stored and what would be computed");
+    command->add_flag("--wait", options->wait, "wait until all bakes have ended");
     command->add_option("--fetch", options->folder, "wait, then fetch each result into DIR/ID")->type_name("DIR");
     command->footer("Transmittance is not computed again. Prints the batch's id and how many bakes it has.\n\n");
     add_connection_flags(*command, options->connection);

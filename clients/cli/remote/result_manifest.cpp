@@ -13,7 +13,7 @@ constexpr std::size_t most_files = 4096, longest_name = 200;
 constexpr std::uint64_t longest_file = std::uint64_t(1) << 40;
 
 [[noreturn]] void distrust(const std::string& what) {
-    throw RemoteError(ExitCode::refused, "the server's manifest is not to be trusted: " + plain(what));
+    throw RemoteError(ExitCode::refused, "the server's manifest cannot be trusted: " + plain(what));
 }
 
 bool is_plain_name(const std::string& name) {

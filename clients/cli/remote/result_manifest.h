@@ -1,4 +1,4 @@
-// Which files a bake consists of, as its manifest says; nothing in it is trusted.
+// The files of a bake as its manifest lists them. The manifest is not trusted: every entry is checked.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +12,9 @@ struct ListedFile {
     std::uint64_t bytes = 0;
 };
 
-/// The files that the manifest lists. Throws RemoteError(refused) for names that are no plain file names (letters,
-/// digits,
-/// '.', '_' and '-', no leading '.', not manifest.json), doubles, digests that are none, and more than 4096 files.
+/// The files that the manifest lists. A name must be a plain file name (letters, digits, '.', '_' and '-', no leading
+/// '.', not manifest.json) and must be listed once. At most 4096 files are allowed.
+/// Throws RemoteError(refused) for a wrong name, a wrong digest or too many files.
 std::vector<ListedFile> listed_files(const std::string& manifest);
 
 }  // namespace hairbake

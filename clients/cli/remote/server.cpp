@@ -55,8 +55,7 @@ void Patience::wait(const ConnectionLost& lost) {
         failing_since_ = now();
         pause_ = first_pause_s;
         if (seconds_ > 0)
-            say_warning(std::string(lost.what()) + "; trying again for " + std::to_string(std::lround(seconds_)) +
-                        " s");
+            say_warning(std::string(lost.what()) + "; retrying for " + std::to_string(std::lround(seconds_)) + " s");
     }
     if (now() - failing_since_ >= seconds_) throw lost;
     pause(pause_, progress_);
@@ -131,7 +130,7 @@ std::string text_in(const Server::Json& json, const char* field) {
 
 std::string id_in(const Json& json, const char* field) {
     std::string id = text_in(json, field);
-    if (!is_id(id)) throw RemoteError(ExitCode::refused, std::string("the server's answer has no usable ") + field);
+    if (!is_id(id)) throw RemoteError(ExitCode::refused, std::string("the server's answer has no valid ") + field);
     return id;
 }
 

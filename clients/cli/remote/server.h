@@ -1,4 +1,4 @@
-// The service as the commands see it: calls that outlast a lost connection, refusals in words, JSON answers.
+// The service as the commands use it: calls with retries, refusals as messages, JSON answers.
 #pragma once
 
 #include <cstdint>
@@ -15,15 +15,16 @@ struct ServerOptions {
     double patience_s = 120;
 };
 
-/// Waits between attempts, longer each time (0.1 s to 5 s), until the patience is over.
+/// Waits between retries, longer each time (0.1 s to 5 s), until `seconds` have passed.
 class Patience {
 public:
     Patience(double seconds, Progress& progress) : seconds_(seconds), progress_(progress) {}
 
-    /// After a failed attempt. Says so the first time; throws `lost` when `seconds` have passed since the first failure
-    /// after the last renew(), Error(cancelled) when asked to stop.
+    /// Call it after a failed attempt. Warns the first time.
+    /// Throws `lost` when `seconds` have passed since the first failure after the last renew().
+    /// Throws Error(cancelled).
     void wait(const ConnectionLost& lost);
-    /// Something was achieved: the time counts anew.
+    /// Starts the time again, after progress was made.
     void renew();
 
 private:
@@ -32,10 +33,11 @@ private:
     double failing_since_ = -1, pause_ = 0;
 };
 
-/// Sleeps; throws Error(cancelled) within 50 ms of a cancel.
+/// Sleeps.
+/// Throws Error(cancelled) within 50 ms of a cancel.
 void pause(double seconds, const Progress& progress);
 
-/// `text` for a terminal or a log: control characters become '?', and what is longer than 1,000 bytes is cut.
+/// `text` for a terminal or a log: control characters become '?', and the text is cut after 1,000 bytes.
 std::string plain(const std::string& text);
 
 class Server {
@@ -44,12 +46,14 @@ public:
 
     Server(const ServerOptions& options, BakeProgress& progress);
 
-    /// One attempt. Throws as HttpClient::send; a server that is busy or has nothing behind its proxy (429, 502, 503,
-    /// 504) is ConnectionLost too.
+    /// One attempt.
+    /// Throws the errors of HttpClient::send.
+    /// Throws ConnectionLost also when the server is busy or its proxy does not reach it (429, 502, 503, 504).
     HttpAnswer once(const HttpCall& call);
-    /// The same with patience.
+    /// once() with retries until the patience is used up.
     HttpAnswer ask(const HttpCall& call);
-    /// JSON there and back; throws RemoteError(refused) unless the status is 2xx.
+    /// Sends and receives JSON.
+    /// Throws RemoteError(refused) unless the status is 2xx.
     Json json(const std::string& method, const std::string& path, const std::string& body = {});
 
     BakeProgress& progress() { return progress_; }
@@ -62,20 +66,22 @@ private:
     HttpClient http_;
 };
 
-/// Throws the RemoteError(refused) for an answer that is no success: the server's words and the field at fault.
+/// For an error answer.
+/// Throws RemoteError(refused) with the server's message and the field at fault.
 [[noreturn]] void refuse(const HttpAnswer& answer);
 
-/// The body as JSON of at most 64 levels. Throws RemoteError(refused).
+/// The body as JSON of at most 64 levels.
+/// Throws RemoteError(refused).
 Server::Json parse_json(const std::string& text);
 
-/// What the server calls a bake, a batch or an upload, fit for an address: letters, digits, '-', '_', at most 128 of
-/// them.
+/// Whether `text` has the form of an id of a bake, a batch or an upload: 1 to 128 letters, digits, '-' and '_'.
 bool is_id(const std::string& text);
 
-/// json[field]; empty where there is no text.
+/// json[field]; empty if it is not a text.
 std::string text_in(const Server::Json& json, const char* field);
 
-/// json[field], an id. Throws RemoteError(refused).
+/// json[field], an id.
+/// Throws RemoteError(refused).
 std::string id_in(const Server::Json& json, const char* field);
 
 }  // namespace hairbake

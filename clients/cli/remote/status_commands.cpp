@@ -70,7 +70,7 @@ void run_status(const StatusOptions& options) {
     for (const std::string& line : lines) print_line(line);
 }
 
-/// Cancelled already is as good.
+/// A bake that is cancelled already is no error.
 void cancel(Server& server, const std::string& id) {
     const HttpAnswer answer = server.ask({.method = "DELETE", .path = "/v1/bakes/" + id});
     if (answer.status == 409 && server.json("GET", "/v1/bakes/" + id).at("state") == "cancelled") return;
@@ -94,13 +94,14 @@ void run_cancel(const StatusOptions& options) {
 }  // namespace
 
 void add_status_command(CLI::App& app, Action& action) {
-    CLI::App* command = app.add_subcommand("status", "Tell how bakes on a service are doing");
+    CLI::App* command = app.add_subcommand("status", "Show the states of bakes on a service");
     const auto options = std::make_shared<StatusOptions>();
-    command->add_option("id", options->ids, "of bakes; without: the 20 newest")->type_name("ID");
-    command->add_option("--batch", options->batch, "counts of a batch, as rebake prints it")->type_name("ID");
-    command->add_option("--state", options->state, "of the newest, only those that are so")
+    command->add_option("id", options->ids, "ids of bakes; default: the 20 newest")->type_name("ID");
+    command->add_option("--batch", options->batch, "id of a batch, as rebake prints it: shows its counts")
+        ->type_name("ID");
+    command->add_option("--state", options->state, "of the newest, only those in this state")
         ->check(CLI::IsMember({"queued", "running", "done", "failed", "cancelled"}));
-    command->add_flag("--json", options->json, "the server's words, one object a line");
+    command->add_flag("--json", options->json, "the server's answers, one JSON object per line");
     add_connection_flags(*command, options->connection);
     command->callback([options, &action] {
         action = [options] { with_json_failures(options->connection.progress, [&] { run_status(*options); }); };
@@ -110,8 +111,8 @@ void add_status_command(CLI::App& app, Action& action) {
 void add_cancel_command(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("cancel", "Cancel bakes on a service");
     const auto options = std::make_shared<StatusOptions>();
-    command->add_option("id", options->ids, "of bakes, as submit prints them")->type_name("ID");
-    command->add_option("--batch", options->batch, "what has not ended of a batch")->type_name("ID");
+    command->add_option("id", options->ids, "ids of bakes, as submit prints them")->type_name("ID");
+    command->add_option("--batch", options->batch, "all bakes of a batch that have not ended")->type_name("ID");
     add_connection_flags(*command, options->connection);
     command->callback([options, &action] {
         action = [options] { with_json_failures(options->connection.progress, [&] { run_cancel(*options); }); };

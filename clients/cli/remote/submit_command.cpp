@@ -26,7 +26,7 @@ struct SubmitOptions {
     std::string folder;
 };
 
-/// A request, what people call it, where its result goes and what became of it.
+/// A request, its label, the folder of its result, and its bake.
 struct Job {
     BakeRequest request;
     std::string label, folder, id, state;
@@ -110,20 +110,21 @@ void run(SubmitOptions options) {
 }  // namespace
 
 void add_submit_command(CLI::App& app, Action& action) {
-    CLI::App* command = app.add_subcommand("submit", "Have a service bake what `bake` would bake here");
+    CLI::App* command = app.add_subcommand("submit", "Bake on a service; takes the flags of `bake`");
     const auto options = std::make_shared<SubmitOptions>();
     command
         ->add_option("--hair", options->hairs,
-                     "hair model; several make a bake each. Every input is a file, sha256:DIGEST or name:NAME")
+                     "hair model; may be given more than once: one bake for each. Every input is a file, sha256:DIGEST "
+                     "or name:NAME")
         ->allow_extra_args(false);
     add_request_flags(*command, options->request,
                       "HDR environment, one picture (lat-long, cross or strip); alone: irradiance maps only");
     command->add_option("--priority", options->priority, "-10 to 10: higher ones are baked first")
         ->check(CLI::Range(-10, 10));
-    command->add_flag("--wait", options->wait, "until the bake has ended");
+    command->add_flag("--wait", options->wait, "wait until the bakes have ended");
     command
         ->add_option("--fetch", options->folder,
-                     "wait, then fetch the result into this folder; of several: into DIR/NAME OF THE HAIR")
+                     "wait, then fetch the result into this folder; several bakes: into DIR/NAME OF THE HAIR")
         ->type_name("DIR");
     add_connection_flags(*command, options->connection);
     command->footer(request_flags_help() +

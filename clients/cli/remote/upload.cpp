@@ -68,7 +68,7 @@ public:
                     patience.renew();
                 }
                 if (offset && append(id, *offset, progress)) break;
-                id.clear();  // it is gone: whole by now, or expired
+                id.clear();  // the upload is gone: it is complete, or it has expired
                 memory_.forget();
                 if (is_stored(server_, digest_)) break;
             } catch (const ConnectionLost& lost) {
@@ -91,22 +91,22 @@ private:
         if (answer.status != 201) refuse(answer);
         const std::string location = answer.header("location");
         std::string id = location.substr(location.rfind('/') + 1);
-        if (!is_id(id)) throw RemoteError(ExitCode::refused, "the server names no usable place for an upload");
+        if (!is_id(id)) throw RemoteError(ExitCode::refused, "the server gives no valid address for the upload");
         return id;
     }
 
-    /// Nothing when there is no such upload.
+    /// The offset, or nothing if there is no such upload.
     std::optional<std::uint64_t> offset_of(const std::string& id) {
         const HttpAnswer answer = call("HEAD", "/v1/uploads/" + id, {});
         if (answer.status == 404 || answer.status == 410) return {};
         if (answer.status != 200) refuse(answer);
         const auto offset = number(answer.header("upload-offset"));
         if (!offset || *offset > bytes_)
-            throw RemoteError(ExitCode::refused, "the server has more of " + path_ + " than there is");
+            throw RemoteError(ExitCode::refused, "the server states a wrong offset for the upload of " + path_);
         return offset;
     }
 
-    /// Sends what is left. False when the upload is gone.
+    /// Sends the rest of the file. False if the upload is gone.
     bool append(const std::string& id, std::uint64_t offset, const std::function<void(std::uint64_t)>& progress) {
         const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path_.c_str(), "rb"), std::fclose);
         if (!file || ::fseeko(file.get(), static_cast<off_t>(offset), SEEK_SET) != 0)
@@ -129,9 +129,9 @@ private:
         };
         const HttpAnswer answer = server_.once(call);
         if (answer.status == 404 || answer.status == 410) return false;
-        // Another process sends the same file, or the connection that was lost is not closed yet over there.
+        // Another process sends the same file, or the server has not yet closed the lost connection.
         if (answer.status == 409)
-            throw ConnectionLost(server_.url() + ": another request is at the upload of " + path_);
+            throw ConnectionLost(server_.url() + ": another request is writing the upload of " + path_);
         if (answer.status != 204) refuse(answer);
         return true;
     }

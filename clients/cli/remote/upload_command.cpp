@@ -26,7 +26,7 @@ bool is_name(const std::string& name) {
 void check(const UploadOptions& options) {
     if (options.name.empty()) return;
     if (options.files.size() != 1 || options.kind.empty())
-        throw Error(ErrorKind::usage, "--name goes with one file and --as", "name");
+        throw Error(ErrorKind::usage, "--name needs exactly one file and --as", "name");
     if (!is_name(options.name))
         throw Error(ErrorKind::usage, "name is " + options.name + "; allowed are up to 200 letters, digits and . _ - /",
                     "name");
@@ -65,11 +65,10 @@ void add_upload_command(CLI::App& app, Action& action) {
         ->add_option("--as", options->kind,
                      "model or environment: the service reads and lists it; mesh: for --name only")
         ->check(CLI::IsMember({"model", "environment", "mesh"}));
-    command->add_option("--name", options->name, "lets name:NAME mean this file; earlier versions stay")
+    command->add_option("--name", options->name, "makes name:NAME refer to this file; earlier versions stay")
         ->type_name("NAME");
     command->add_option("--note", options->note, "kept with the name's new version")->type_name("TEXT");
-    command->footer(
-        "Prints sha256:DIGEST and the file, one line each. An interrupted upload goes on where it stopped.\n\n");
+    command->footer("Prints sha256:DIGEST and the file, one line each. An interrupted upload is resumed.\n\n");
     add_connection_flags(*command, options->connection);
     command->callback([options, &action] {
         action = [options] { with_json_failures(options->connection.progress, [&] { run(*options); }); };

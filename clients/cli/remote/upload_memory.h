@@ -6,12 +6,12 @@
 
 namespace hairbake {
 
-/// The id of the unfinished upload of one file to one server. Where nothing can be written, nothing is remembered.
+/// The id of the unfinished upload of one file to one server. If the file cannot be written, the id is not kept.
 class UploadMemory {
 public:
     UploadMemory(const std::string& url, const std::string& digest);
 
-    /// Empty when there is none.
+    /// The id; empty when there is none.
     std::string recall() const;
     void keep(const std::string& id) const noexcept;
     void forget() const noexcept;

@@ -20,7 +20,7 @@ EndedBake ended(const Json& view) {
     return bake;
 }
 
-/// Asks for the same address again and again; what has not changed is not sent again.
+/// Polls one address. The server does not send an unchanged answer again.
 class Poll {
 public:
     Poll(Server& server, std::string path) : server_(server), path_(std::move(path)) {}

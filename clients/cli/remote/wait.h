@@ -1,4 +1,4 @@
-// Bakes that are on their way: polled until they have ended.
+// Waits for bakes: polls them until they have ended.
 #pragma once
 
 #include <string>
@@ -13,8 +13,8 @@ struct EndedBake {
     std::string message, field;  ///< why it failed
 };
 
-/// Reports the stage "bake". Outlasts a restart of the server (Server::ask). Throws RemoteError(refused) for an unknown
-/// bake.
+/// Waits until all bakes have ended. Reports the phase "bake". Survives a restart of the server (Server::ask).
+/// Throws RemoteError(refused) for an unknown bake.
 std::vector<EndedBake> wait_for_bakes(Server& server, const std::vector<std::string>& ids);
 std::vector<EndedBake> wait_for_batch(Server& server, const std::string& batch);
 

@@ -50,8 +50,9 @@ void run_fetch(const FetchOptions& options) {
 void add_wait_command(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("wait", "Wait until bakes on a service have ended");
     const auto options = std::make_shared<WaitOptions>();
-    command->add_option("id", options->ids, "of bakes, as submit prints them")->type_name("ID");
-    command->add_option("--batch", options->batch, "all bakes of a batch, as rebake prints it")->type_name("ID");
+    command->add_option("id", options->ids, "ids of bakes, as submit prints them")->type_name("ID");
+    command->add_option("--batch", options->batch, "id of a batch, as rebake prints it: all its bakes")
+        ->type_name("ID");
     add_connection_flags(*command, options->connection);
     command->callback([options, &action] {
         action = [options] { with_json_failures(options->connection.progress, [&] { run_wait(*options); }); };
@@ -61,7 +62,7 @@ void add_wait_command(CLI::App& app, Action& action) {
 void add_fetch_command(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("fetch", "Fetch the result of a bake that is done");
     const auto options = std::make_shared<FetchOptions>();
-    command->add_option("id", options->id, "of the bake")->required()->type_name("ID");
+    command->add_option("id", options->id, "id of the bake")->required()->type_name("ID");
     command->add_option("--out", options->folder, "result folder: new, empty or an earlier result")->required();
     add_connection_flags(*command, options->connection);
     command->callback([options, &action] {

@@ -1,4 +1,4 @@
-"""Client of hairbaked: sends hair models and environments, has them baked, fetches the results. Standard library only.
+"""Client of hairbaked: sends hair models and environments, requests bakes, fetches the results. Standard library only.
 
     client = hairbake.Client("http://bake.example:8080", token_file="token")
     bake = client.submit(hair="groom.hair", environment="sky.hdr", transmittance={"directions": 64})

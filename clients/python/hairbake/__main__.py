@@ -1,4 +1,4 @@
-"""python3 -m hairbake: the commands of the program hairbake that talk to a service, where there is only Python."""
+"""python3 -m hairbake: those commands of the program hairbake that talk to a service, for machines with only Python."""
 from __future__ import annotations
 
 import argparse
@@ -15,7 +15,7 @@ from ._errors import BakeCancelled, BakeFailed, HairbakeError, UsageError
 from ._fetch import check_result_folder
 from ._http import identifier
 
-EPILOG = """exit codes: 0 done, 2 usage, 3 bad input, 5 interrupted (the bake goes on on the server), 6 server
+EPILOG = """exit codes: 0 done, 2 usage, 3 bad input, 5 interrupted (the bake continues on the server), 6 server
 unreachable, 7 refused, 8 bake failed, 9 bake cancelled on the server"""
 Arguments = argparse.Namespace
 LIGHTING_BLOCKS = ("irradiance", "environment_settings", "fiber")  #: of the request: `rebake` may change them
@@ -39,7 +39,7 @@ class Display:
         print(json.dumps({"event": event, **facts}), flush=True)
 
     def line(self, text: str, event: str, **facts: Any) -> None:
-        """`text` for people, or the event."""
+        """Prints `text`, or the event in the mode json."""
         if self.bar:
             print("\r\033[K", end="", file=sys.stderr, flush=True)
         if self.json:
@@ -65,7 +65,7 @@ def set_field(request: Dict[str, Any], setting: str) -> None:
 
 
 def make_request(arguments: Arguments) -> Dict[str, Any]:
-    """The request file, then the flags, then --set: what comes later wins."""
+    """Takes the request file, then the flags, then --set. Later ones win."""
     request: Dict[str, Any] = {}
     if arguments.request:
         try:
@@ -73,7 +73,7 @@ def make_request(arguments: Arguments) -> Dict[str, Any]:
         except (OSError, ValueError, RecursionError) as error:
             raise HairbakeError(f"{arguments.request}: {error}", "request") from error
         if not isinstance(request, dict):
-            raise UsageError(f"{arguments.request} holds no JSON object", "request")
+            raise UsageError(f"{arguments.request} is not a JSON object", "request")
     for field in ("environment", "occluder", "receiver"):
         if getattr(arguments, field):
             request[field] = getattr(arguments, field)
@@ -89,7 +89,7 @@ def short_name(hair: str) -> str:
 
 
 def tell_ended(client: Client, display: Display, bakes: List[Bake], folder_of: Callable[[str], Optional[Path]]) -> None:
-    """Fetches what is done, one line each; raises when some are not done."""
+    """Fetches the bakes that are done. Prints one line for each bake. Raises if some are not done."""
     lost = [bake for bake in bakes if bake.state != "done"]
     for bake in bakes:
         reason = client.with_paths(bake.message)
@@ -111,14 +111,14 @@ def tell_ended(client: Client, display: Display, bakes: List[Bake], folder_of: C
 
 
 def wait_for(arguments: Arguments, which: List[str], wait: Callable[[], List[Bake]]) -> List[Bake]:
-    """When it is interrupted, it says how to go on."""
+    """Waits. On an interrupt it prints the commands that resume the wait or cancel the bakes."""
     try:
         return wait()
     except KeyboardInterrupt:
         given = [("--server", arguments.server), ("--token-file", arguments.token_file),
                  ("--ca-file", arguments.ca_file)]
         rest = shlex.join([*which, *(word for flag, value in given if value for word in (flag, value))])
-        print(f'\nhairbake: the server goes on baking; "python3 -m hairbake wait {rest}" waits again. '
+        print(f'\nhairbake: the bake continues on the server; "python3 -m hairbake wait {rest}" resumes the wait. '
               f'"python3 -m hairbake cancel {rest}" cancels it.', file=sys.stderr)
         raise
 
@@ -187,7 +187,7 @@ def rebake(client: Client, arguments: Arguments, display: Display) -> None:
                              "models": arguments.model}
     which = {name: value for name, value in which.items() if value}
     if len(which) != 1:
-        raise UsageError("exactly one of --bake, --replaces, --name and --model says what to bake again", "bakes")
+        raise UsageError("exactly one of --bake, --replaces, --name and --model is needed", "bakes")
     for block in LIGHTING_BLOCKS:
         text = getattr(arguments, block)
         try:
@@ -208,7 +208,7 @@ def rebake(client: Client, arguments: Arguments, display: Display) -> None:
 
 def upload(client: Client, arguments: Arguments, display: Display) -> None:
     if arguments.name and (len(arguments.file) != 1 or not arguments.kind):
-        raise UsageError("--name goes with one file and --as", "name")
+        raise UsageError("--name needs exactly one file and --as", "name")
     for file in arguments.file:
         reference = client.upload(file, arguments.kind, arguments.name, arguments.note)
         display.line(f"{reference} {file}", "stored", file=file, reference=reference)
@@ -218,14 +218,16 @@ def parser() -> argparse.ArgumentParser:
     common = argparse.ArgumentParser(add_help=False)
     common.add_argument("--server", default=os.environ.get("HAIRBAKE_SERVER"),
                         help="http://HOST:PORT (HAIRBAKE_SERVER)")
-    common.add_argument("--token-file", default=os.environ.get("HAIRBAKE_TOKEN_FILE"), help="(HAIRBAKE_TOKEN_FILE)")
+    common.add_argument("--token-file", default=os.environ.get("HAIRBAKE_TOKEN_FILE"),
+                        help="file with the token (HAIRBAKE_TOKEN_FILE)")
     common.add_argument("--ca-file", help="certificates (PEM) to trust instead of the system's")
-    common.add_argument("--patience", type=float, default=120, help="seconds to go on trying; default 120")
+    common.add_argument("--patience", type=float, default=120, help="seconds of retries; default 120")
     common.add_argument("--progress", choices=("auto", "json", "none"), default="auto")
     priority = argparse.ArgumentParser(add_help=False)
     priority.add_argument("--priority", type=int, default=0, help="-10 to 10: higher ones are baked first")
-    priority.add_argument("--wait", action="store_true", help="until the bakes have ended")
-    priority.add_argument("--fetch", metavar="DIR", help="wait, then fetch; of several: into a folder each in DIR")
+    priority.add_argument("--wait", action="store_true", help="wait until the bakes have ended")
+    priority.add_argument("--fetch", metavar="DIR",
+                          help="wait, then fetch; several bakes: each into its own folder in DIR")
     main_parser = argparse.ArgumentParser(prog="python3 -m hairbake", description=__doc__, epilog=EPILOG)
     commands = main_parser.add_subparsers(dest="command", required=True)
 
@@ -236,20 +238,21 @@ def parser() -> argparse.ArgumentParser:
         made.set_defaults(run=run)
         return made
 
-    made = command(submit, "ask for bakes; inputs are files, sha256:DIGEST or name:NAME", priority)
-    made.add_argument("--hair", action="append", help="may be given more than once: a bake each")
+    made = command(submit, "request bakes; inputs are files, sha256:DIGEST or name:NAME", priority)
+    made.add_argument("--hair", action="append", help="may be given more than once: one bake for each")
     made.add_argument("--env", dest="environment")
     made.add_argument("--occluder")
     made.add_argument("--receiver")
-    made.add_argument("--request", metavar="FILE", help="JSON fields of the request, e.g. of hairbake presets NAME")
+    made.add_argument("--request", metavar="FILE",
+                      help="JSON file with fields of the request, e.g. from hairbake presets NAME")
     made.add_argument("--outputs", help="npy,exr,hair ...")
     made.add_argument("--set", action="append", default=[], metavar="PATH=VALUE",
                       help="e.g. transmittance.method=trace")
-    made = command(status, "tell how bakes are doing")
-    made.add_argument("id", nargs="*", help="without: the 20 newest")
+    made = command(status, "show the states of bakes")
+    made.add_argument("id", nargs="*", help="ids of bakes; default: the 20 newest")
     made.add_argument("--batch", help="counts of a batch")
     made.add_argument("--state", choices=("queued", "running", "done", "failed", "cancelled"),
-                      help="of the newest, only those that are so")
+                      help="of the newest, only those in this state")
     for run, words in ((wait, "wait until bakes have ended"), (cancel, "cancel bakes")):
         made = command(run, words)
         made.add_argument("id", nargs="*")

@@ -1,4 +1,4 @@
-"""Reads the .npy files of a result: as numpy arrays where there is numpy, else as memoryviews of the same shape."""
+"""Reads the .npy files of a result: as numpy arrays if numpy is installed, else as memoryviews of the same shape."""
 from __future__ import annotations
 
 import ast

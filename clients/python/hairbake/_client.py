@@ -22,7 +22,7 @@ REFERENCE = re.compile(r"(name|sha256):")
 
 
 class Bake(NamedTuple):
-    """A bake as the server last told. `view` is its whole answer."""
+    """A bake in the state that the server last reported. `view` is the server's whole answer."""
 
     id: str
     state: str  #: "queued", "running", "done", "failed" or "cancelled"
@@ -30,13 +30,13 @@ class Bake(NamedTuple):
 
     @property
     def fraction(self) -> float:
-        """How much of it is done, 0 to 1."""
+        """The share of the bake that is done, 0 to 1."""
         fraction = self.view.get("fraction")
         return min(1.0, max(0.0, float(fraction))) if isinstance(fraction, (int, float)) else 0.0
 
     @property
     def message(self) -> str:
-        """Why it failed, or empty."""
+        """The reason why it failed, or empty."""
         error = self.view.get("error")
         return plain(error.get("message", "")) if isinstance(error, dict) else ""
 
@@ -52,14 +52,14 @@ class Batch(NamedTuple):
 
     id: str
     bakes: int
-    states: Dict[str, int]  #: how many are in which state
+    states: Dict[str, int]  #: number of bakes in each state
 
 
 BakeOrId = Union[Bake, str]
 
 
 def read_token(file: PathLike) -> str:
-    """Warns when everybody on this machine can read the file."""
+    """The token in `file`. Warns when everybody on this machine can read the file. Raises HairbakeError."""
     path = Path(file)
     try:
         token = path.read_text(encoding="ascii", errors="replace").strip()
@@ -74,7 +74,7 @@ def read_token(file: PathLike) -> str:
 
 def _bake(view: Any) -> Bake:
     if not isinstance(view, dict):
-        raise Refused("the server's answer is no bake")
+        raise Refused("the server's answer is not a bake")
     return Bake(identifier(view.get("id")), str(view.get("state")), view)
 
 
@@ -82,7 +82,7 @@ def _batch(view: Json) -> Batch:
     states, bakes = view.get("states"), view.get("bakes")
     counted = isinstance(states, dict) and all(isinstance(count, int) for count in states.values())
     if not isinstance(bakes, int) or not counted:
-        raise Refused("the server's answer is no batch")
+        raise Refused("the server's answer is not a batch")
     return Batch(identifier(view.get("id")), bakes, dict(states or {}))
 
 
@@ -91,11 +91,16 @@ def _id(bake: BakeOrId) -> str:
 
 
 class Client:
-    """Talks to one service. `token_file` or `token` where it wants one; `patience_s` is how long to go on trying while
-    it cannot be reached (a restart, for example); `ca_file` (PEM) replaces the system's certificates; `progress` is
-    told the stage and its fraction. Inputs are paths, "sha256:DIGEST" or "name:NAME". Every method raises
-    HairbakeError: Unreachable, Refused (with the field at fault), or the class itself for a local file. Not
-    thread-safe."""
+    """Talks to one service.
+
+    server:            http://HOST:PORT or https://HOST
+    token, token_file: the token, or a file with it; only if the service has tokens
+    ca_file:           certificates (PEM) that replace the system's
+    patience_s:        time for retries while the service cannot be reached, for example during a restart
+    progress:          called with the stage and its fraction
+
+    Inputs are paths, "sha256:DIGEST" or "name:NAME". Every method raises HairbakeError: Unreachable, Refused (with the
+    field at fault), or HairbakeError itself for a local file. Not thread-safe."""
 
     def __init__(self, server: str, token: str = "", token_file: Optional[PathLike] = None,
                  ca_file: Optional[str] = None, patience_s: float = 120, progress: Optional[Progress] = None) -> None:
@@ -105,7 +110,8 @@ class Client:
 
     def upload(self, file: PathLike, kind: str = "", name: str = "", note: str = "") -> str:
         """Sends the file when the server lacks it and returns "sha256:DIGEST". With `kind` "model" or "environment" the
-        server reads and lists it; `name` ("stage1/sunset", with a kind, also "mesh") then means this file."""
+        server reads and lists it. `name` ("stage1/sunset") needs a kind, which may be "mesh"; the name then means this
+        file."""
         path = Path(file)
         try:
             size = max(1, path.stat().st_size)
@@ -126,8 +132,8 @@ class Client:
     def submit(self, hair: Optional[PathLike] = None, environment: Optional[PathLike] = None, *,
                occluder: Optional[PathLike] = None, receiver: Optional[PathLike] = None, priority: int = 0,
                **fields: Any) -> Bake:
-        """Asks for a bake; a request that was baked before is done at once. `fields` are the other blocks of the
-        request: strand={...}, transmittance={...}, irradiance={...}, outputs=[...]."""
+        """Posts the request for a bake. A request whose result is stored is done at once. `fields` are the other
+        blocks of the request: strand={...}, transmittance={...}, irradiance={...}, outputs=[...]."""
         request: Json = {**fields, "priority": priority}
         inputs = {"hair": hair, "environment": environment, "occluder": occluder, "receiver": receiver}
         for field, value in inputs.items():
@@ -139,8 +145,8 @@ class Client:
         return _bake(self._http.json("GET", f"/v1/bakes/{_id(bake)}"))
 
     def list(self, newest: Optional[int] = None, **filters: str) -> List[Bake]:
-        """All bakes of the filters state, model, environment, name and batch, newest first; `newest`: so many of
-        them, up to 1,000."""
+        """The bakes that match the filters, newest first. Filters: state, model, environment, name, batch. `newest`: at
+        most this number of bakes, up to 1,000; None: all."""
         query = "&".join(f"{name}={_plain_filter(value)}" for name, value in filters.items())
         bakes: List[Bake] = []
         cursor = ""
@@ -148,18 +154,18 @@ class Client:
             page = self._http.json("GET", f"/v1/bakes?limit={newest or 1000}&{query}{cursor}")
             views = page.get("bakes")
             if not isinstance(views, list):
-                raise Refused("the server's answer is no list of bakes")
+                raise Refused("the server's answer is not a list of bakes")
             bakes += [_bake(view) for view in views]
             if newest or page.get("next") is None:
                 return bakes
             cursor = f"&cursor={identifier(page['next'], 'cursor')}"
 
     def wait(self, bake: BakeOrId) -> Bake:
-        """Until the bake has ended. Raises BakeFailed with the reason, BakeCancelled."""
+        """Waits until the bake is done and returns it. Raises BakeFailed with the reason, or BakeCancelled."""
         return self.wait_all([bake])[0]
 
     def wait_all(self, bakes: Iterable[BakeOrId]) -> List[Bake]:
-        """Until all have ended; raises for the first that is not done."""
+        """Waits until all have ended. Raises BakeFailed or BakeCancelled for the first that is not done."""
         ended = self.wait_ended(bakes)
         for bake in ended:
             if bake.state != "done":
@@ -169,7 +175,7 @@ class Client:
         return ended
 
     def wait_ended(self, bakes: Iterable[BakeOrId]) -> List[Bake]:
-        """Until all have ended, however."""
+        """Waits until all are done, failed or cancelled."""
         ids = [_id(bake) for bake in bakes]
         ended: Dict[str, Bake] = {}
         tags: Dict[str, str] = {}
@@ -190,12 +196,12 @@ class Client:
             pause = min(1.3 * pause, LONGEST_POLL_S)
 
     def fetch(self, bake: BakeOrId, folder: PathLike) -> Result:
-        """The result as a folder that appears whole or not at all: new, empty or an earlier result. An interrupted
-        fetch goes on where it stopped; every file is checked against its digest."""
+        """Fetches the result into a folder, which appears whole or not at all. The folder must be new, empty or an
+        earlier result. An interrupted fetch is resumed. Every file is checked against its digest."""
         return fetch_result(self._http, _id(bake), Path(folder), lambda fraction: self._progress("fetch", fraction))
 
     def cancel(self, bake: BakeOrId) -> None:
-        """Cancelled already is as good; raises Refused when it is done or has failed."""
+        """Cancels the bake. Does nothing if it is cancelled already. Raises Refused if it is done or has failed."""
         answer = self._http.ask("DELETE", f"/v1/bakes/{_id(bake)}")
         if answer.status == 409 and self.status(bake).state == "cancelled":
             return
@@ -207,14 +213,15 @@ class Client:
                models: Optional[Sequence[PathLike]] = None, priority: int = 0,
                **blocks: Mapping[str, Any]) -> Batch:
         """Bakes grooms again under a new environment; their transmittance is not computed again. Exactly one of
-        `bakes`, `replaces` (an environment), `name` (of an environment) and `models` says which. `blocks` are blocks of
-        the request whose fields change: irradiance={...}, environment_settings={...}, fiber={...}."""
+        `bakes`, `replaces` (an environment), `name` (of an environment) and `models` selects the grooms. `blocks` are
+        blocks of the request whose fields change: irradiance={...}, environment_settings={...}, fiber={...}."""
         return _batch(self._rebake("", environment, bakes, replaces, name, models, priority, blocks))
 
     def rebake_forecast(self, environment: PathLike, *, bakes: Optional[Sequence[BakeOrId]] = None,
                         replaces: Optional[PathLike] = None, name: Optional[str] = None,
                         models: Optional[Sequence[PathLike]] = None, **blocks: Mapping[str, Any]) -> Json:
-        """What rebake() would do: {"bakes": n, "done_bakes": n, "reused_stages": {...}, "computed_stages": {...}}."""
+        """The work that rebake() would do: {"bakes": n, "done_bakes": n, "reused_stages": {...},
+        "computed_stages": {...}}."""
         return self._rebake("?dry_run=1", environment, bakes, replaces, name, models, 0, blocks)
 
     def batch(self, batch: Union[Batch, str]) -> Batch:
@@ -222,7 +229,7 @@ class Client:
         return _batch(self._http.json("GET", f"/v1/batches/{id}"))
 
     def wait_batch(self, batch: Union[Batch, str]) -> List[Bake]:
-        """Until all of its bakes have ended, however; those bakes."""
+        """Waits until all bakes of the batch are done, failed or cancelled, and returns them."""
         pause = FIRST_POLL_S
         while True:
             now = self.batch(batch)
@@ -234,7 +241,7 @@ class Client:
             pause = min(1.3 * pause, LONGEST_POLL_S)
 
     def with_paths(self, text: str) -> str:
-        """`text` with the paths of files that were sent instead of their digests."""
+        """`text`, with the paths of sent files in place of their digests."""
         for reference, path in self._paths.items():
             text = text.replace(reference, path)
         return text
@@ -244,7 +251,7 @@ class Client:
         return text if REFERENCE.match(text) else self.upload(text)
 
     def _poll(self, bake: str, tags: Dict[str, str]) -> Optional[Bake]:
-        """Nothing when it has not changed."""
+        """The bake, or None if it has not changed."""
         answer = self._http.ask("GET", f"/v1/bakes/{bake}", {"If-None-Match": tags[bake]} if bake in tags else None)
         if answer.status == 304:
             return None
@@ -272,5 +279,5 @@ class Client:
 
 def _plain_filter(value: str) -> str:
     if not re.fullmatch(r"[0-9A-Za-z._/:-]{1,600}", value):
-        raise UsageError(f"{plain(value)!r} is no filter")
+        raise UsageError(f"{plain(value)!r} is not a valid filter")
     return value

@@ -1,4 +1,4 @@
-"""What can go wrong, with the exit codes of the program hairbake."""
+"""The errors of the client, with the exit codes of the program hairbake."""
 from __future__ import annotations
 
 
@@ -14,7 +14,7 @@ class HairbakeError(Exception):
 
 
 class UsageError(HairbakeError):
-    """What was asked for makes no sense: a folder in use, an address that is none."""
+    """The call is wrong, for example a folder in use or an invalid address."""
 
     exit_code, kind = 2, "usage"
 
@@ -26,11 +26,11 @@ class Unreachable(HairbakeError):
 
 
 class ConnectionLost(Unreachable):
-    """The same call may succeed a little later."""
+    """The connection failed or was lost. A retry of the call may succeed."""
 
 
 class Refused(HairbakeError):
-    """The server refuses, or answers what is not to be trusted. `status` is the HTTP status, or 0."""
+    """The server refuses, or its answer cannot be trusted. `status` is the HTTP status, or 0."""
 
     exit_code, kind = 7, "refused"
 
@@ -40,7 +40,7 @@ class Refused(HairbakeError):
 
 
 class BakeFailed(HairbakeError):
-    """The server tried; the message is the reason."""
+    """The bake failed on the server; the message is the reason."""
 
     exit_code, kind = 8, "bake failed"
 
@@ -52,5 +52,5 @@ class BakeCancelled(HairbakeError):
 
 
 def plain(text: object) -> str:
-    """`text` for a terminal or a log: control characters become '?', and what is longer than 1000 is cut."""
+    """`text` for a terminal or a log: control characters become '?', and the text is cut after 1000 characters."""
     return "".join(c if c.isprintable() else "?" for c in str(text)[:1000])

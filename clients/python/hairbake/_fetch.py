@@ -21,7 +21,7 @@ MOST_FILES = 4096
 
 
 class Result(NamedTuple):
-    """A result folder. `received` is how many bytes came over the wire."""
+    """A result folder. `received` is the number of bytes that the fetch received."""
 
     folder: Path
     received: int
@@ -42,12 +42,12 @@ class Listed(NamedTuple):
 
 
 def listed_files(manifest: bytes) -> List[Listed]:
-    """The manifest's files; nothing in it is trusted. Raises Refused."""
+    """The files that the manifest lists. Checks everything in it. Raises Refused."""
     answer = Answer(200, {})
     answer.body = manifest
     entries = answer.json().get("files")
     if not isinstance(entries, list) or len(entries) > MOST_FILES:
-        raise Refused("the server's manifest is not to be trusted: it lists no files, or too many")
+        raise Refused("the server's manifest cannot be trusted: it lists no files, or too many")
     files: Dict[str, Listed] = {}
     for entry in entries:
         try:
@@ -57,13 +57,13 @@ def listed_files(manifest: bytes) -> List[Listed]:
         except (KeyError, TypeError):
             good = None
         if not good:
-            raise Refused(f"the server's manifest is not to be trusted: it lists {plain(entry)}")
+            raise Refused(f"the server's manifest cannot be trusted: it lists {plain(entry)}")
         files[file.name] = file
     return list(files.values())
 
 
 def check_result_folder(folder: Path) -> None:
-    """Raises UsageError when results may not go there: it holds other files than those of an earlier result."""
+    """Raises UsageError if the folder holds other files than those of an earlier result."""
     if not folder.exists():
         return
     if not folder.is_dir():
@@ -74,7 +74,7 @@ def check_result_folder(folder: Path) -> None:
     try:
         known = {file.name for file in listed_files((folder / "manifest.json").read_bytes())}
     except (OSError, Refused) as error:
-        raise UsageError(f"{folder} holds files and no manifest.json of hairbake", "out") from error
+        raise UsageError(f"{folder} holds files but no manifest.json of hairbake", "out") from error
     if there - known:
         raise UsageError(f"{folder} holds {sorted(there - known)[0]}, which its manifest.json does not list", "out")
 
@@ -135,7 +135,7 @@ class _Fetch:
         if answer.status != 200:
             raise answer.refuse()
         if answer.headers.get("etag") != f'"{hashlib.sha256(answer.body).hexdigest()}"':
-            raise Refused("the manifest that came is not the one that its digest names")
+            raise Refused("the received manifest does not have the digest that the server states")
         return answer.body
 
     def fetch_file(self, file: Listed) -> None:
@@ -151,8 +151,8 @@ class _Fetch:
             return
         part.unlink()
         if not resumed:
-            raise Refused(f"{file.name} came with other bytes than its digest {file.digest} names")
-        self.fetch_file(file)  # what was there before may have been at fault
+            raise Refused(f"the received {file.name} does not have the digest {file.digest} of the manifest")
+        self.fetch_file(file)  # the part from an earlier fetch may have been wrong
 
     def fill(self, part: Path, file: Listed) -> None:
         if part.is_symlink() or (part.exists() and part.stat().st_size > file.bytes):
@@ -178,7 +178,7 @@ class _Fetch:
                 if head.status != 206:
                     stream.truncate(0)
                 elif not head.headers.get("content-range", "").startswith(f"bytes {have}-"):
-                    raise Refused("the server sends another range than it was asked for")
+                    raise Refused("the server sends another range than the requested one")
                 begun.append(True)
             end = stream.seek(0, os.SEEK_END) + len(piece)
             if end > file.bytes:
@@ -186,7 +186,7 @@ class _Fetch:
             try:
                 stream.write(piece)
                 stream.flush()
-            except OSError as error:  # not one of the connection
+            except OSError as error:  # else it would be taken for an error of the connection
                 raise HairbakeError(f"{self.folder}: {error.strerror or error}") from error
             self.received += len(piece)
             self.report(end)
@@ -199,7 +199,7 @@ class _Fetch:
             raise answer.refuse()
 
     def move_in(self, manifest: bytes, files: List[Listed]) -> None:
-        """All parts are here: the folder appears, and an earlier result gives way."""
+        """Puts the complete folder in place. It replaces an earlier result."""
         staging, aside = self.parts / "whole", self.parts / "earlier"
         for leftover in (staging, aside):
             shutil.rmtree(leftover, ignore_errors=True)
@@ -216,7 +216,7 @@ class _Fetch:
 
 def fetch_result(http: Http, bake: str, folder: Path, progress: Optional[Callable[[float], None]] = None) -> Result:
     """Fetches into `folder`: new, empty or an earlier result, whose files of the same digest are not fetched again.
-    What is there so far lies in a hidden folder beside it; the next fetch goes on there. Raises HairbakeError."""
+    Files received so far are kept in a hidden folder beside it; the next fetch resumes there. Raises HairbakeError."""
     folder = Path(os.path.abspath(folder))
     check_result_folder(folder)
     try:

@@ -1,4 +1,4 @@
-"""HTTP that outlasts lost connections. The only module that knows http.client."""
+"""HTTP with retries after lost connections. The only module that uses http.client."""
 from __future__ import annotations
 
 import http.client
@@ -15,7 +15,7 @@ from ._errors import ConnectionLost, Refused, Unreachable, UsageError, plain
 BUSY = (429, 502, 503, 504)
 PIECE = 1 << 18
 FIRST_PAUSE_S, LONGEST_PAUSE_S = 0.1, 5.0
-TIMEOUT_S = 120.0  # without a byte; the server digests a large upload before it answers
+TIMEOUT_S = 120.0  # without a received byte; the server computes the digest of a large upload before it answers
 IDENTIFIER = re.compile(r"[0-9A-Za-z_-]{1,128}")
 
 Json = Dict[str, Any]
@@ -39,7 +39,7 @@ class Answer:
         return value
 
     def refuse(self) -> Refused:
-        """The exception for an answer that is no success: the server's words and the field at fault."""
+        """The exception for an error answer: the server's message and the field at fault."""
         try:
             problem = self.json()
         except Refused:
@@ -53,14 +53,14 @@ class Answer:
 
 
 class Patience:
-    """Waits between attempts, longer each time, until `seconds` have passed since the first failure."""
+    """Waits between retries, longer each time, until `seconds` have passed since the first failure."""
 
     def __init__(self, seconds: float) -> None:
         self.seconds = seconds
         self.renew()
 
     def renew(self) -> None:
-        """Something was achieved: the time counts anew."""
+        """Starts the time again, after progress was made."""
         self.failing_since: Optional[float] = None
         self.pause = FIRST_PAUSE_S
 
@@ -69,7 +69,7 @@ class Patience:
         if self.failing_since is None:
             self.failing_since = now
             if self.seconds > 0:
-                print(f"hairbake: warning: {lost}; trying again for {self.seconds:.0f} s", file=sys.stderr)
+                print(f"hairbake: warning: {lost}; retrying for {self.seconds:.0f} s", file=sys.stderr)
         if now - self.failing_since >= self.seconds:
             raise lost
         time.sleep(self.pause)
@@ -77,9 +77,9 @@ class Patience:
 
 
 def identifier(value: object, what: str = "id") -> str:
-    """`value` when it is an id as the service gives them. Raises Refused."""
+    """`value` if it has the form of the service's ids. Raises Refused."""
     if not isinstance(value, str) or not IDENTIFIER.fullmatch(value):
-        raise Refused(f"{plain(value)!r} is no usable {what}")
+        raise Refused(f"{plain(value)!r} is not a valid {what}")
     return value
 
 
@@ -106,8 +106,9 @@ class Http:
     def once(self, method: str, path: str, headers: Optional[Mapping[str, str]] = None, body: bytes = b"",
              source: Optional[Iterator[bytes]] = None, source_bytes: int = 0, sink: Optional[Sink] = None,
              most_bytes: int = 16 << 20) -> Answer:
-        """One attempt. `source` gives the body in pieces, `sink` takes that of a 2xx answer. Raises ConnectionLost
-        (also for a server that is busy), Unreachable, and Refused for an answer longer than `most_bytes`."""
+        """One attempt. `source` gives the request's body in pieces; `sink` takes the body of a 2xx answer. Raises
+        ConnectionLost (also for a server that is busy), Unreachable, and Refused for an answer of more than
+        `most_bytes`."""
         connection = self._connection()
         try:
             self._send(connection, method, path, headers or {}, body, source, source_bytes)
@@ -124,7 +125,7 @@ class Http:
 
     def ask(self, method: str, path: str, headers: Optional[Mapping[str, str]] = None, body: bytes = b"",
             most_bytes: int = 16 << 20) -> Answer:
-        """The same with patience."""
+        """once() with retries until the patience is used up."""
         patience = self.patience()
         while True:
             try:
@@ -133,7 +134,7 @@ class Http:
                 patience.wait(lost)
 
     def json(self, method: str, path: str, body: Optional[Json] = None) -> Json:
-        """JSON there and back; raises Refused unless the status is 2xx."""
+        """Sends and receives JSON. Raises Refused unless the status is 2xx."""
         data = b"" if body is None else json.dumps(body).encode()
         answer = self.ask(method, path, {"Content-Type": "application/json"} if data else None, data)
         if not 200 <= answer.status < 300:
@@ -159,7 +160,7 @@ class Http:
             for piece in source or ():
                 connection.send(piece)
         except (BrokenPipeError, ConnectionResetError):
-            pass  # the server may have said why
+            pass  # the server may have sent the reason already
 
     def _receive(self, connection: http.client.HTTPConnection, sink: Optional[Sink], most_bytes: int) -> Answer:
         response = connection.getresponse()
@@ -168,7 +169,7 @@ class Http:
         while piece := response.read(PIECE):
             taken += len(piece)
             if taken > most_bytes:
-                raise Refused(f"the server's answer is longer than the {most_bytes} bytes that it may have")
+                raise Refused(f"the server's answer is too long; allowed are {most_bytes} bytes")
             if sink and 200 <= answer.status < 300:
                 sink(answer, piece)
             else:

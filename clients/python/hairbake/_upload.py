@@ -1,4 +1,4 @@
-"""Files that the server lacks, sent by tus 1.0 and resumed where an earlier attempt stopped."""
+"""Sends files that the server lacks, by tus 1.0. Resumes interrupted uploads."""
 from __future__ import annotations
 
 import base64
@@ -17,7 +17,7 @@ GONE = (404, 410)
 def open_input(path: Path) -> BinaryIO:
     try:
         return open(path, "rb")
-    except OSError as error:  # else it would be taken for one of the connection
+    except OSError as error:  # else it would be taken for an error of the connection
         raise HairbakeError(f"{path}: {error.strerror or error}") from error
 
 
@@ -40,7 +40,7 @@ def is_stored(http: Http, digest: str) -> bool:
 
 
 class _Memory:
-    """The id of an unfinished upload, kept between processes; shared with the program hairbake."""
+    """The id of an unfinished upload, in a file that later processes and the program hairbake read."""
 
     def __init__(self, url: str, digest: str) -> None:
         cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
@@ -57,7 +57,7 @@ class _Memory:
             self.file.parent.mkdir(parents=True, exist_ok=True)
             self.file.write_text(upload + "\n")
         except OSError:
-            pass  # then nothing is remembered
+            pass  # the upload then cannot be resumed by another process
 
     def forget(self) -> None:
         try:
@@ -89,7 +89,7 @@ class _Upload:
                     patience.renew()
                 if offset is not None and self.append(upload, offset):
                     break
-                upload = ""  # it is gone: whole by now, or expired
+                upload = ""  # the upload is gone: it is complete, or it has expired
                 self.memory.forget()
                 if is_stored(self.http, self.digest):
                     break
@@ -106,7 +106,7 @@ class _Upload:
         return identifier(answer.headers.get("location", "").rsplit("/", 1)[-1], "place for an upload")
 
     def offset_of(self, upload: str) -> Optional[int]:
-        """Nothing when there is no such upload."""
+        """The offset, or None if there is no such upload."""
         answer = self.http.once("HEAD", f"/v1/uploads/{upload}", {"Tus-Resumable": "1.0.0"})
         if answer.status in GONE:
             return None
@@ -114,18 +114,18 @@ class _Upload:
             raise answer.refuse()
         offset = answer.headers.get("upload-offset", "")
         if not re.fullmatch("[0-9]{1,18}", offset) or int(offset) > self.bytes:
-            raise Refused(f"the server has more of {self.path} than there is")
+            raise Refused(f"the server states a wrong offset for the upload of {self.path}")
         return int(offset)
 
     def append(self, upload: str, offset: int) -> bool:
-        """Sends what is left. False when the upload is gone."""
+        """Sends the rest of the file. False if the upload is gone."""
         answer = self.http.once("PATCH", f"/v1/uploads/{upload}", {
             "Tus-Resumable": "1.0.0", "Content-Type": "application/offset+octet-stream", "Upload-Offset": str(offset)},
             source=self.pieces(offset), source_bytes=self.bytes - offset)
         if answer.status in GONE:
             return False
-        if answer.status == 409:  # another process sends it, or the lost connection is not closed yet over there
-            raise ConnectionLost(f"{self.http.url}: another request is at the upload of {self.path}")
+        if answer.status == 409:  # another process sends it, or the server has not yet closed the lost connection
+            raise ConnectionLost(f"{self.http.url}: another request is writing the upload of {self.path}")
         if answer.status != 204:
             raise answer.refuse()
         return True
@@ -143,7 +143,7 @@ class _Upload:
 
 
 def send_if_lacking(http: Http, path: Path, progress: Callable[[int], None]) -> str:
-    """"sha256:DIGEST" of the file, which the server then has. Raises HairbakeError."""
+    """Sends the file if the server lacks it. Returns "sha256:DIGEST". Raises HairbakeError."""
     if path.is_dir():
         raise UsageError(f"{path} is a folder; the service takes single files")
     digest = digest_of_file(path)

@@ -12,7 +12,7 @@ export function bytes_text(bytes) {
     return `${value < 9.95 ? value.toFixed(1) : value.toFixed(0)} ${units[unit]}`;
 }
 
-/** At most `digits` significant digits, without an exponent where people do not need one. */
+/** At most `digits` significant digits, without an exponent where plain digits are readable. */
 export function number_text(value, digits = 4) {
     if (!Number.isFinite(value)) return String(value);
     const size = Math.abs(value);

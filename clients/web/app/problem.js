@@ -1,4 +1,4 @@
-// A failed request to the service, with a message for people.
+// A failed request to the service, with a message for the user.
 import { wait_ms_of } from './retry.js';
 
 export class Problem extends Error {

@@ -21,7 +21,7 @@ export function TokenForm({ on_open }) {
         } catch (failure) {
             set_problem(
                 failure.status === 401
-                    ? { message: 'The service does not know this token, or it has expired.' }
+                    ? { message: 'The service does not know this token, or the token has expired.' }
                     : failure,
             );
         }

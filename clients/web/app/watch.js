@@ -1,7 +1,7 @@
 // A document of the service that is fetched again and again while it changes.
 import { pause } from './retry.js';
 
-// With these statuses the next answer would be the same. Others pass: a proxy's 429, a restarting daemon's 503.
+// With these statuses the next answer would be the same. Others are temporary: a proxy's 429, a starting daemon's 503.
 const final_statuses = new Set([400, 401, 403, 404, 405, 410, 422]);
 
 const hidden_factor = 5; // a hidden page asks less often

@@ -15,8 +15,8 @@ export class BakeProblem extends Error {
 }
 
 /**
- * Loads a finished bake: { id, names, model, environment, request, strands, maps }; all but the last two as the service
- * sends them.
+ * Loads a finished bake: { id, names, model, environment, request, strands, maps }; strands and maps are read from the
+ * files, the rest is as the service sends it.
  * known: bakes loaded before; strands or maps of the same digest are not fetched again but are the same objects;
  * say(text): called with each step.
  *

@@ -56,12 +56,12 @@ function Progress({ bake, old }) {
         ${old && old !== bake.id && html` or <a href=${`#/view/${old}/${bake.id}`}>compare it with this one</a>`}.`;
 }
 
-// Another try would fail too.
+// A retry would fail too.
 function is_refusal({ status }) {
     return status >= 400 && status < 500 && !is_turned_away(status);
 }
 
-// Fetches the bake again after a pause unless it has ended. Returns a function that stops that.
+// Fetches the bake again after a pause unless it has ended. Returns a function that cancels the fetch.
 function follow(api, bake, take, fail) {
     if (!bake || ended.includes(bake.state)) return;
     const abort = new AbortController();

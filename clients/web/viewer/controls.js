@@ -100,7 +100,7 @@ export function SkyPanel({ edit, on }) {
 }
 
 /**
- * way: how the hair hides the lights; ways: the possible ones with the bakes shown;
+ * way: how the hair blocks the lights; ways: those that the bakes shown support;
  * level: mean of the sky's diffuse map, the scale of the lights' irradiance.
  */
 export function LightsPanel({ lights, level, way, ways, on, on_way }) {
@@ -119,7 +119,7 @@ export function LightsPanel({ lights, level, way, ways, on, on_way }) {
             onClick=${() => on([...lights, new_light(level)])}>Add a light</button>
         ${
             lights.length > 0 &&
-            html`<${Choice} label="Hidden by the hair through" value=${way} options=${options} on=${on_way} />`
+            html`<${Choice} label="Hair blocks added lights by" value=${way} options=${options} on=${on_way} />`
         }
     </fieldset>`;
 }

@@ -1,7 +1,7 @@
 // Cube maps as one 2-D texture array: a layer is a map, its six faces are cells of 3 x 2, and every cell has a border
 // of one texel, so that the card's bilinear filter crosses a face's edge as core's sample_cube does.
 //
-// Cube samplers do not do: WebGL 2 has no arrays of cube maps and cannot choose a sampler by a computed index, and
+// Cube samplers cannot be used: WebGL 2 has no arrays of cube maps and cannot choose a sampler by a computed index, and
 // three.js negates x in cube look-ups. Faces are those of core/environment/cube_map.h.
 import { face_direction, texel_of } from '../app/result/cube.js';
 import { from_half, to_half } from './half_float.js';

@@ -16,8 +16,8 @@ export class EditOrders {
     }
 
     /**
-     * Whether the edit is in the maps of bake `id`. left: id of the bake on the left when two are shown, else null. An
-     * order counts while its edit is the current one. Beside the bake that was edited it counts after that too.
+     * Whether the edit is in the maps of bake `id`. left: id of the bake on the left when two are shown, else null. True
+     * while the edit of the order is the current one; with the edited bake on the left also after that.
      */
     holds_edit(id, left = null) {
         const order = this.#orders.get(id);

@@ -36,7 +36,7 @@ void main() {
     v_tangent_and_transmittance = tangent_and_transmittance;
 ${each_sh(name => `    v_${name} = ${name};`)}
 #ifdef CONE
-    // A |b| axis is a mean over directions as A is: it may be interpolated along the strand, axis and angle may not.
+    // A |b| axis is a mean over directions, so it may be interpolated along the strand. Axis and angle may not.
     v_moment = bent_cone.xyz * (tangent_and_transmittance.w * cone_moment(bent_cone.w));
 #endif
     gl_Position = projectionMatrix * (viewMatrix * vec4(position, 1.0));

@@ -17,7 +17,7 @@ export const most_stops = 32;
 
 /**
  * The settings of one side. bake: index of the bake; part: all, diffuse, specular or transmittance;
- * with_transmittance: whether the light is multiplied by A; hidden_by: how the hair hides added lights;
+ * with_transmittance: whether the light is multiplied by A; hidden_by: how the hair blocks added lights;
  * as_baked: whether the edit is left out.
  */
 export const default_side = {
@@ -291,7 +291,8 @@ function set_lights(uniforms, lights, defines) {
     });
 }
 
-// The shader's number for a wish; without that data the best that the bake has: harmonics, then bent cone, then A.
+// The shader's number for a requested way. If the bake lacks its data: the best that it has, in the order harmonics,
+// bent cone, A.
 function hiding(wish, defines) {
     const has = { harmonics: defines.SH_VECTORS > 0, cone: 'CONE' in defines, average: true };
     return hidden_by[has[wish] ? wish : ['harmonics', 'cone', 'average'].find(way => has[way])];

@@ -9,7 +9,7 @@ export function from_half(bits) {
     return bits & 0x8000 ? -magnitude : magnitude;
 }
 
-/** The nearest half, of two equally near the even one. */
+/** The nearest half float; a tie goes to the even one. */
 export function to_half(value) {
     const sign = value < 0 ? 0x8000 : 0,
         magnitude = Math.abs(value);

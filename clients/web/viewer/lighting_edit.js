@@ -31,7 +31,7 @@ export function rotation_matrix(degrees) {
 }
 
 /**
- * Angles whose rotation_matrix is `m`, to 1e-9 degrees; where Y is turned by 90 degrees, X and Z are one: Z is 0 then.
+ * Angles whose rotation_matrix is `m`, to 1e-9 degrees. With Y at 90 degrees, X and Z turn about one axis; then Z is 0.
  */
 export function rotation_degrees(m) {
     const y = Math.atan2(-m[2][0], Math.hypot(m[2][1], m[2][2]));
@@ -61,7 +61,7 @@ export function light_irradiance({ irradiance, color }) {
     return color.map(channel => channel * irradiance);
 }
 
-/** What exposure and tint multiply radiance with, RGB. */
+/** The factor of exposure and tint on radiance, RGB. */
 export function gain_of(edit) {
     return edit.tint.map(factor => factor * 2 ** edit.exposure_stops);
 }
@@ -111,7 +111,7 @@ export function compose_request(request, edit) {
     };
 }
 
-/** What a request does to its environment, for people: a list. */
+/** The changes that a request makes to its environment, as texts for the user. */
 export function lighting_text(request) {
     const { rotation_deg, exposure_stops, tint, lights } = lighting_of(request);
     const [x, y, z] = rotation_deg.map(angle => `${Number(angle.toFixed(1))}°`);
@@ -130,7 +130,7 @@ function refuse_beyond_limits({ exposure_stops }, lights) {
     if (lights.length > 64) throw new Error(`There would be ${lights.length} lights in all; a bake takes at most 64.`);
 }
 
-/** Twelve digits: what is written to a request is not the last bit of a sine. */
+/** Rounds to twelve digits, so that rounding errors do not appear in the request. */
 function tidy(value) {
     return Math.abs(value) < 1e-9 ? 0 : Number(value.toPrecision(12));
 }

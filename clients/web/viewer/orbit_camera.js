@@ -26,7 +26,7 @@ export class OrbitCamera {
         return add(this.target, this.axes().backward, this.distance);
     }
 
-    /** Moves as near as the box [[low], [high]] fits the picture with a small margin; the angles stay. */
+    /** Sets the distance so that the box [[low], [high]] fills the picture up to a small margin. The angles stay. */
     frame([low, high], aspect) {
         const { right, up, backward } = this.axes(),
             tangent = this.tangent();

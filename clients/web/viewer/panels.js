@@ -14,7 +14,7 @@ const hint = 'Drag or arrow keys: orbit. Shift with either: move. Wheel, pinch, 
 /** The bake that an edit starts from: that of the left side. */
 const edited_bake = ({ bakes, sides }) => bakes[sides[0].bake];
 
-/** What can hide an added light, with the bakes shown. */
+/** The ways in which the hair can block an added light, with the bakes shown. */
 function ways_of(bakes) {
     const harmonics = bakes.some(bake => bake.strands.sh_bands > 0);
     const cone = bakes.some(bake => bake.strands.has_cone);

@@ -1,4 +1,4 @@
-// The picture of the hair with its captions, its status and what went wrong.
+// The picture of the hair with its captions, its status and its error message.
 import { html } from '../vendor/preact.js';
 import { BakeOrder } from './bake_order.js';
 import { is_edited } from './lighting_edit.js';

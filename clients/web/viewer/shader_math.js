@@ -6,7 +6,7 @@
 /**
  * Angle between unit vectors from q = |a - b|^2 in [0, 2]: sqrt(q) times this polynomial in q, lowest power first, is
  * 2 asin(sqrt(q) / 2) to 9e-8 (3.5e-7 in single precision). Fitted by weighted least squares to an even error. The dot
- * product would not do: near 0 and pi its rounding error of 6e-8 changes the angle by 3e-4.
+ * product is not exact enough: near 0 and pi its rounding error of 6e-8 changes the angle by 3e-4.
  */
 export const angle_polynomial = [
     1.0000009, 0.0416509322, 0.0047664137, 0.000525499517, 0.000305898683, -8.10274692e-5, 2.88555483e-5,

@@ -7,10 +7,10 @@ import { no_edit } from './lighting_edit.js';
 import { use_hair_view } from './mounted_view.js';
 
 /**
- * left, right: ids of bakes, right may be missing. With other ids, camera, look and edit stay, and what the bakes share
- * with those before is not fetched again.
+ * left, right: ids of bakes, right may be missing. With other ids, camera, look and edit stay. Shared strands and
+ * maps are not fetched again.
  * Returns the state of use_hair_view, { bakes, status, sides, look, edit, orders, stops, way } and a set_ function for
- * each of the last but `orders`. orders: EditOrders; stops: brightness of the screen; way: what hides added lights.
+ * each of the last but `orders`. orders: EditOrders; stops: screen brightness; way: how hair blocks added lights.
  */
 export function use_viewer({ left, right, api }) {
     const hair_view = use_hair_view();

@@ -237,7 +237,7 @@ test('directional transmittance and bent cones of a real bake hide an added ligh
     const pictures = new Set();
     const ways = ['Directional transmittance', 'Bent cone', 'A alone'];
     for (const way of ways) {
-        await page.getByRole('combobox', { name: 'Hidden by the hair through' }).selectOption(way);
+        await page.getByRole('combobox', { name: 'Hair blocks added lights by' }).selectOption(way);
         await page.evaluate(() => new Promise(drawn => requestAnimationFrame(() => requestAnimationFrame(drawn))));
         const bytes = await page.locator('.viewer canvas').screenshot();
         pictures.add(bytes.toString('base64'));

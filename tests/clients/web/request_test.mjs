@@ -100,7 +100,7 @@ test('what the schema does not allow is named by field, with what is allowed', (
     assert.deepEqual(wrong({ irradiance: { lights: [{ direction: [0, 1, 0] }] } }), [
         'irradiance.lights.0.irradiance is missing',
     ]);
-    assert.deepEqual(wrong({ outputs: ['npy', 'npy'] }), ['outputs holds something twice']);
+    assert.deepEqual(wrong({ outputs: ['npy', 'npy'] }), ['outputs has an entry twice']);
     assert.deepEqual(wrong({ colour: 1, toString: 2 }), ['colour is not a field', 'toString is not a field']);
 });
 

@@ -16,7 +16,7 @@ export function BakeForm({ schema, presets, query }) {
     const hair = use_input_choice('model', query.hair ?? '');
     const environment = use_input_choice('environment', query.environment ?? '');
     const { settings, base, preset, change, take_preset } = use_form_settings(schema, presets);
-    const [waits, set_waits] = useState({}); // by field: why its file is not there yet
+    const [waits, set_waits] = useState({}); // by field: why its file is not yet stored
     const form = useRef(null);
     const values = { ...settings, hair: hair.value, environment: environment.value };
     const request = build_request(schema, values);

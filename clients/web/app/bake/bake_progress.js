@@ -1,4 +1,4 @@
-// The progress of one bake: its state, its stages with their phases, the time left, cancel and again.
+// The progress of one bake: its state, its stages with their phases, the time left. Buttons cancel it and bake again.
 import { html, useState } from '../../vendor/preact.js';
 import { use_app } from '../hooks.js';
 import { count_text } from '../number_text.js';

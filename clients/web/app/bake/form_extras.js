@@ -7,7 +7,7 @@ import { Fold } from './settings_block.js';
 
 const meshes = ['occluder', 'receiver'];
 
-/** on_wait(name, message): why a mesh that was picked is not there yet, null once it is. */
+/** on_wait(name, message): why a picked mesh is not stored yet; null once it is stored. */
 export function MeshesAndPriority({ schema, values, wrong, on_change, on_wait }) {
     return html`<${Fold} title="Meshes and priority" faulty=${[...meshes, 'priority'].some(name => wrong[name])}>
         <div class="fields">

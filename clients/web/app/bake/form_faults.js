@@ -2,7 +2,7 @@
 import { title_text } from '../name_text.js';
 import { faults } from './schema.js';
 
-/** The faults that the page finds itself. waits: by field, why its file is not there yet; null once it is. */
+/** The faults that the page finds itself. waits: by field, why its file is not stored yet; null once it is. */
 export function faults_of_form(schema, request, waits) {
     const wrong = Object.fromEntries(
         faults(schema, request).map(({ path, message }) => [path, `${title_text(path)} ${message}.`]),
@@ -16,7 +16,7 @@ export function faults_of_form(schema, request, waits) {
 export const faults_of_problem = problem =>
     problem?.field ? { [problem.field.replaceAll(/\[(\d+)\]/g, '.$1')]: problem.message } : {};
 
-/** Those that are shown before the form was submitted: not that inputs are missing or still being sent. */
+/** The faults that are shown before the form is submitted: all but missing inputs and inputs still being sent. */
 export const early_faults = (wrong, waits) =>
     Object.fromEntries(Object.entries(wrong).filter(([path]) => path !== 'hair' && !waits[path]));
 
@@ -30,7 +30,7 @@ export function fault_of(wrong, path) {
     return found && { message: wrong[found], place: found.slice(own.length + 1) };
 }
 
-/** Moves the focus to the first wrong field, also in a closed part of the form. */
+/** Moves the focus to the first wrong field; opens its part of the form if that is closed. */
 export function focus_first_fault(form) {
     const wrong = form.querySelector('[aria-invalid=true]');
     for (let fold = wrong?.closest('details'); fold; fold = fold.parentElement.closest('details')) fold.open = true;

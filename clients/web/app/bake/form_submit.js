@@ -1,4 +1,4 @@
-// Posting the form's request: faults found here keep it back, and a refusal of the service is kept as the problem.
+// Posts the form's request unless the page finds faults in it. Keeps a refusal of the service as the problem.
 import { useState } from '../../vendor/preact.js';
 import { use_app } from '../hooks.js';
 import { count_text } from '../number_text.js';

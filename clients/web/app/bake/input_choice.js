@@ -23,8 +23,8 @@ export function use_input_choice(kind, first) {
 }
 
 /**
- * choice: of use_input_choice; none: label of the choice of no file; fault: id of the element that says what is wrong,
- * if anything is; on_change(): called with each change.
+ * choice: of use_input_choice; none: label of the choice of no file; fault: id of the element with the error
+ * message, if there is one; on_change(): called with each change.
  */
 export function InputChoice({ choice, title, none, fault, on_change }) {
     const { kind, inputs, id, value } = choice;

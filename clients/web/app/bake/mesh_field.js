@@ -7,7 +7,7 @@ import { Cut } from '../parts.js';
 /**
  * The upload of one picked mesh.
  * on_stored(digest): called when the service has it;
- * on_wait(message): why it is not there yet, null once it is or is given up.
+ * on_wait(message): why it is not stored yet; null once it is stored or given up.
  * Returns { file, job, pick(file), drop() }; job: of uploads.js, undefined without an unfinished upload.
  */
 function use_mesh_upload(on_stored, on_wait) {
@@ -44,7 +44,7 @@ function UnfinishedUpload({ job, on_cancel }) {
     return html`<small role="status">${job.file.name}: ${job.phase}${reason ? `: ${reason}` : ''}</small>
         <p class="actions">
             ${job.phase === 'failed' && html`<button type="button" class="small"
-                onClick=${() => uploads.again(job)}>Go on</button>`}
+                onClick=${() => uploads.again(job)}>Resume</button>`}
             <button type="button" class="small secondary outline" onClick=${on_cancel}
                 aria-label=${`Cancel: ${job.file.name}`}>Cancel</button></p>`;
 }
@@ -63,7 +63,7 @@ function NamedMeshes({ id, names, value, file, described, fault, on_change }) {
 /**
  * name: 'occluder' or 'receiver'; schema: of that field;
  * value: 'sha256:...', 'name:...' or null; on_change(value);
- * on_wait(message): why a picked file is not the value yet, null once it is;
+ * on_wait(message): why a picked file is not yet the value; null once it is;
  * fault: what is wrong, if anything is.
  */
 export function MeshField({ name, schema, value, on_change, on_wait, fault }) {

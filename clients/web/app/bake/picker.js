@@ -1,4 +1,4 @@
-// The choice of a stored model or environment by its thumbnail, and of the name that the request uses for it.
+// Chooses a stored model or environment by its thumbnail, and the name or digest by which the request refers to it.
 import { html } from '../../vendor/preact.js';
 import { label_of, summary } from '../input_facts.js';
 import { Cut } from '../parts.js';

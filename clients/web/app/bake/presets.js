@@ -11,6 +11,6 @@ export function Presets({ presets, value, on_change }) {
                 </option>`)}
         </select>
         <small id="preset-help">
-            ${chosen?.description ?? 'Every field as the service sets it when a request leaves it out.'}</small>
+            ${chosen?.description ?? 'Every field has the default of the service.'}</small>
     </div>`;
 }

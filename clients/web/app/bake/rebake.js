@@ -1,4 +1,4 @@
-// The button that bakes a set again under another environment, below the forecast of the work.
+// The button that bakes a set again under another environment, with the forecast of the work above it.
 import { html, useEffect, useState } from '../../vendor/preact.js';
 import { use_app } from '../hooks.js';
 import { count_text } from '../number_text.js';

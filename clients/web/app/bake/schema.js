@@ -113,7 +113,7 @@ function array_faults(schema, value, path) {
     if (value.length < minItems || value.length > maxItems)
         return [{ path, message: `has ${value.length} entries; allowed are ${minItems} to ${maxItems}` }];
     if (schema.uniqueItems && new Set(value.map(item => JSON.stringify(item))).size < value.length)
-        return [{ path, message: 'holds something twice' }];
+        return [{ path, message: 'has an entry twice' }];
     return schema.items ? value.flatMap((item, i) => faults(schema.items, item, `${path}.${i}`)) : [];
 }
 

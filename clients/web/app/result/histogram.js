@@ -7,7 +7,7 @@ import { half_values } from '../../viewer/half_float.js';
 
 const bins = 50;
 
-/** Statistics of values in [0, 1]: { counts in equal bins, mean, low, median, high }; low to high holds nine tenths. */
+/** Statistics of values in [0, 1]: { counts in equal bins, mean, low, median, high }; 90 % lie from low to high. */
 export function spread(values) {
     const counts = new Array(bins).fill(0);
     let sum = 0;
@@ -142,7 +142,7 @@ function Chart({ bake }) {
             ['Vertices', count_text(count, 'vertex', 'vertices')],
             ['Mean of A', number_text(numbers.mean)],
             ['Median', number_text(numbers.median)],
-            ['Nine tenths lie in', `${number_text(numbers.low)} to ${number_text(numbers.high)}`],
+            ['90 % of vertices lie in', `${number_text(numbers.low)} to ${number_text(numbers.high)}`],
         ]} />
     </div>`;
 }

@@ -10,7 +10,7 @@ import { load_maps, srgb_byte } from './map_set.js';
 const most_stops = 32; // as in the viewer
 const lat_long_width = 1024; // at most
 
-/** As layout_of, but a lat-long picture is at most 1024 pixels wide, also where it then leaves out texels. */
+/** As layout_of, but a lat-long picture is at most 1024 pixels wide, even if it then leaves out texels. */
 function picture_layout(kind, n) {
     const width = 16 * n;
     if (kind === 'net' || width <= lat_long_width) return layout_of(kind, n);

@@ -1,5 +1,5 @@
 // A worker that computes the SHA-256 digest of one file after the other, so that the page stays responsive. WebCrypto
-// does not do: it takes a file in one piece only, and is missing where the page comes over plain HTTP.
+// is not enough: it takes a file in one piece only, and is missing where the page comes over plain HTTP.
 import { sha256 } from '../../vendor/hashes/sha2.js';
 
 const piece = 4 << 20;

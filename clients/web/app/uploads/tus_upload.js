@@ -3,7 +3,7 @@
 import { is_turned_away, pause, wait_ms_of } from '../retry.js';
 
 const piece = 8 << 20;
-/** The pauses before each further try; the count starts again when a piece was sent. */
+/** The pauses between retries, in order. A sent piece starts the order again. */
 export const delays_ms = [0, 1000, 2000, 4000, 8000, 15000, 30000, 30000, 30000, 30000];
 
 let library = null;
@@ -27,8 +27,8 @@ function load_library() {
 const reply_of = error => error.originalResponse ?? error.causingError?.reply;
 
 /**
- * Whether another try may succeed: after no reply at all, a conflict with a request that the service still reads, a
- * reply of is_turned_away, or a fault of the server.
+ * Whether a retry may succeed: after no reply, a conflict with a request that the service still reads, a reply of
+ * is_turned_away, or a fault of the server.
  */
 function may_pass(error) {
     const status = reply_of(error)?.getStatus() ?? 0;
@@ -37,8 +37,8 @@ function may_pass(error) {
 
 /**
  * For a reply after which another try may succeed: waits for the time of its Retry-After and throws it as an Error.
- * tus-js-client ignores Retry-After. And if such a reply answers its question how much of the file the service has, it
- * concludes that the upload is gone and sends the whole file again.
+ * tus-js-client ignores Retry-After. When such a reply answers the HEAD for the offset, tus-js-client takes the upload
+ * for lost and sends the whole file again.
  */
 async function wait_when_turned_away(reply, on_wait, signal) {
     const status = reply.getStatus();
@@ -59,7 +59,7 @@ function message_of(error) {
     }
 }
 
-// Without room for the addresses the upload works all the same, but a reload cannot resume it.
+// Without room for the addresses the upload still works, but a reload cannot resume it.
 function lenient(storage) {
     return {
         findAllUploads: () => storage.findAllUploads(),

@@ -31,9 +31,9 @@ function Job({ job }) {
         ${job.waits && html`<span class="waits">The request is repeated: ${job.waits}</span>`}
         ${moving && html`<progress value=${share} max="1" aria-label=${`${job.file.name}, ${job.phase}`}></progress>`}
         <span class="actions">
-            ${job.phase === 'failed' && html`<button class="small" onClick=${() => uploads.again(job)}>Go on</button>`}
+            ${job.phase === 'failed' && html`<button class="small" onClick=${() => uploads.again(job)}>Resume</button>`}
             <button class="small secondary outline" onClick=${() => uploads.remove(job)}
-                aria-label=${`${job.phase === 'stored' ? 'Take off the list' : 'Cancel'}: ${job.file.name}`}>
+                aria-label=${`${job.phase === 'stored' ? 'Remove from the list' : 'Cancel'}: ${job.file.name}`}>
                 ${job.phase === 'stored' ? 'Hide' : 'Cancel'}
             </button>
         </span>

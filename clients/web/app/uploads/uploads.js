@@ -3,7 +3,7 @@ import { is_turned_away, pause } from '../retry.js';
 import { forget_file, keep_file, kept_file, kept_files } from './kept_files.js';
 import { delays_ms, end_upload, send_file } from './tus_upload.js';
 
-/** Whether another try would fail too. After 401 a token may be entered, and a reply of is_turned_away passes. */
+/** Whether a retry would fail too. After 401 a token may be entered; a reply of is_turned_away is temporary. */
 const is_final = status => status >= 400 && status < 500 && status !== 401 && !is_turned_away(status);
 
 /**
@@ -26,7 +26,7 @@ export class Uploads {
         this.#announce = announce;
     }
 
-    /** Calls `callback` after every change. Returns a function that stops that. */
+    /** Calls `callback` after every change. Returns a function that ends the calls. */
     listen(callback) {
         this.#listeners.add(callback);
         return () => this.#listeners.delete(callback);
@@ -73,7 +73,7 @@ export class Uploads {
         this.#run();
     }
 
-    /** Removes a job from the list, also while it is sent. An unfinished upload is deleted from the service. */
+    /** Removes a job from the list, even while its file is sent. An unfinished upload is deleted from the service. */
     remove(job) {
         const stop = this.#stops.get(job.id);
         stop?.abort(new Error('stopped'));
