@@ -62,10 +62,13 @@ std::string occluder_of(const RenderRequest& request, const StoredResult& stored
     return checked(*file, stored.digests.at("occluder"), "occluder");
 }
 
+/// Takes the arrays that the pictures need, as far as they are there.
 void take_arrays(std::vector<VertexArray>& arrays, RenderInput& input) {
-    input.average = take_values(arrays, average_transmittance_kind());
-    input.sh = take_values(arrays, transmittance_sh_kind());
-    input.bent_cone = take_values(arrays, bent_cone_kind());
+    const std::pair<const ArrayKind*, std::vector<float>*> wanted[] = {{&average_transmittance_kind(), &input.average},
+                                                                       {&transmittance_sh_kind(), &input.sh},
+                                                                       {&bent_cone_kind(), &input.bent_cone}};
+    for (const auto& [kind, values] : wanted)
+        if (find_array(arrays, *kind)) *values = take_values(arrays, *kind);
 }
 
 RenderInput from_folder(const RenderRequest& request) {
@@ -107,7 +110,7 @@ RenderInput from_bake(const RenderRequest& request, BakeProgress& progress) {
     input.hair = std::move(*result.hair);
     if (request.bake.occluder) input.occluder = read_mesh(*request.bake.occluder);
     for (StagePart& part : result.parts) {
-        if (!part.arrays.empty()) take_arrays(part.arrays, input);
+        take_arrays(part.arrays, input);
         if (part.maps) input.maps = to_irradiance_maps(std::move(*part.maps));
     }
     if (wanted.environment && needs_environment(request)) input.environment = std::move(result.inputs.environment);

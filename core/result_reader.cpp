@@ -102,11 +102,10 @@ void read_maps(const ResultFiles& files, StoredResult& result) {
     expect_shape(files.path("specular.npy"), specular.shape, {maps, 6, n, n, 3});
     IrradianceMaps target;
     target.face_size = static_cast<int>(n);
-    target.exponent = result.request.fiber.kajiya_kay.exponent;
     const std::size_t texels = 6 * n * n;
     target.diffuse = texels_of(diffuse, 0, texels);
     for (std::size_t m = 0; m < maps; ++m) target.specular.push_back(texels_of(specular, m * texels, texels));
-    result.maps = to_map_set(target, std::string(name_of(result.request.fiber.model)));
+    result.maps = to_map_set(target, result.request.fiber);
 }
 
 InputDigests input_digests(const Json& manifest) {

@@ -23,7 +23,9 @@ std::string summary(const BakeResult& result, const std::string& folder) {
     std::string line;
     const auto add = [&](const char* more) { line += std::string(line.empty() ? " " : ", ") + more; };
     for (const StagePart& part : result.parts) {
-        const double seconds = result.measured.timings_s.at(std::string(part.stage->name));
+        double seconds = 0;
+        for (const Phase& phase : part.stage->phases)
+            if (phase.name != "reference") seconds += result.measured.timings_s.at(std::string(phase.name));
         if (const VertexArray* average = find_array(part.arrays, average_transmittance_kind())) {
             std::snprintf(text, sizeof text, "transmittance of %zu vertices in %.2f s", average->rows(), seconds);
             add(text);

@@ -31,7 +31,7 @@ const std::vector<FieldFlag>& field_flags() {
          {"irradiance.sh_bands.diffuse", "irradiance.sh_bands.specular"},
          "bands of sh: a number or auto"},
         {"--layout", {"environment_settings.layout"}, "of the environment: auto, latlong, faces, horizontal_cross ..."},
-        {"--outputs", {"outputs"}, "files beside the manifest, of npy,exr,hair,ktx2,dds,raw,glb,vdb"},
+        {"--outputs", {"outputs"}, "formats of the result, with commas (listed below)"},
     };
     return flags;
 }
@@ -72,7 +72,11 @@ void add_request_flags(CLI::App& command, RequestFlags& flags, const std::string
         ->allow_extra_args(false);
 }
 
-std::string request_flags_help() { return "Later wins: defaults, --preset, --request, flags, --set.\n"; }
+std::string request_flags_help() {
+    std::string outputs;
+    for (const std::string& format : output_formats()) outputs += (outputs.empty() ? "" : ", ") + format;
+    return "Outputs: " + outputs + ".\nLater wins: defaults, --preset, --request, flags, --set.\n";
+}
 
 BakeRequest make_request(const RequestFlags& flags) {
     BakeRequest request;

@@ -1,7 +1,8 @@
 // The request's `fiber` block: the fibre model and its parameters.
 //
-// A model is listed here four times: its kind, its parameters, its line in fiber_models and one line in fiber_numbers
-// for each parameter. Request fields, ranges, stage keys and picture metadata are made from these tables.
+// A model is listed here seven times: its kind, its parameters, the declaration of its make_fiber_model(), its member of
+// FiberSettings, its alternative of FiberParameters, its line in fiber_models, and a line in fiber_numbers for each
+// parameter. Request fields, ranges, stage keys and metadata of pictures and maps are made from these tables.
 #pragma once
 
 #include <array>
@@ -39,10 +40,11 @@ struct FiberModelEntry {
     FiberModelKind kind;
     std::string_view name;   ///< value of the JSON field fiber.model
     std::string_view block;  ///< JSON block of its parameters inside fiber
+    bool has_maps;           ///< whether it has zonal_kernels(): else requests of irradiance maps are refused at once
     FiberParameters (*parameters)(const FiberSettings&);
 };
 inline constexpr std::array fiber_models{
-    FiberModelEntry{FiberModelKind::kajiya_kay, "kajiya-kay", "kajiya_kay",
+    FiberModelEntry{FiberModelKind::kajiya_kay, "kajiya-kay", "kajiya_kay", true,
                     [](const FiberSettings& settings) { return FiberParameters(settings.kajiya_kay); }},
 };
 

@@ -86,10 +86,10 @@ std::string attribute_name(const ArrayKind& kind) {
     return name;
 }
 
-/// One attribute a vector, or one a coefficient.
+/// One attribute a vector of up to four components; else one a component, as glTF has no longer vectors.
 void add_array(const VertexArray& array, GltfBuilder& builder, std::map<std::string, int>& attributes) {
     const std::string name = attribute_name(*array.kind);
-    if (array.kind->layout != ArrayLayout::coefficients) {
+    if (array.kind->layout != ArrayLayout::coefficients && array.components <= 4) {
         constexpr int types[] = {TINYGLTF_TYPE_SCALAR, TINYGLTF_TYPE_VEC2, TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4};
         attributes[name] = builder.add_attribute(array.values, types[array.components - 1], array.rows());
         return;

@@ -81,7 +81,8 @@ Json describe_lobe(const MapLobe& lobe) {
 }
 
 Json describe(const IrradianceFacts& facts, const StagePart& part, const BakeRequest&) {
-    Json block{{"face_size", part.maps->face_size}, {"exponent", part.maps->exponent}};
+    Json block{{"face_size", part.maps->face_size}};
+    for (const auto& [name, value] : part.maps->parameters) block[name] = value;
     for (const MapLobe& lobe : part.maps->lobes) block[lobe.name] = describe_lobe(lobe);
     block["interpolation_bound"] = triple(facts.interpolation_bound);
     block["interpolation_bound_relative"] = facts.interpolation_bound_relative;

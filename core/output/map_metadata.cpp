@@ -11,11 +11,12 @@ std::string number_text(double value) {
 }
 
 Metadata map_metadata(const MapSet& maps, const std::string& map) {
-    return {{"hairbake:map", map},
-            {"hairbake:model", maps.model},
-            {"hairbake:exponent", number_text(maps.exponent)},
-            {"hairbake:units", "radiance times steradian; Kd and Ks are not applied"},
-            {"hairbake:frame", "right-handed, Y up; the texel's direction is the strand's tangent, root to tip"}};
+    Metadata metadata{{"hairbake:map", map}, {"hairbake:model", maps.model}};
+    for (const auto& [name, value] : maps.parameters) metadata.emplace_back("hairbake:" + name, number_text(value));
+    metadata.emplace_back("hairbake:units", "radiance times steradian; Kd and Ks are not applied");
+    metadata.emplace_back("hairbake:frame",
+                          "right-handed, Y up; the texel's direction is the strand's tangent, root to tip");
+    return metadata;
 }
 
 }  // namespace hairbake

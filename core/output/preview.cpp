@@ -207,10 +207,12 @@ std::vector<std::size_t> shown_maps(std::size_t count) {
 void draw_slices(Sheet& sheet, const MapSet& maps, const MapLobe& lobe, int top) {
     const double stops = exposure_of(lobe.cubes);
     const std::vector<std::size_t> shown = shown_maps(lobe.cubes.size());
+    std::string parameters;
+    for (const auto& [name, value] : maps.parameters) parameters += format("%s %g, ", name.c_str(), value);
     sheet.text(margin, top + 22, lobe.name, 22, bright, Canvas::Align::left, true);
     sheet.text(margin + 124, top + 22,
-               format("%zu of %zu maps, exponent %g, all shown at %+.2f stops", shown.size(), lobe.cubes.size(),
-                      maps.exponent, stops),
+               format("%zu of %zu maps, %sall shown at %+.2f stops", shown.size(), lobe.cubes.size(),
+                      parameters.c_str(), stops),
                15, dim);
     for (std::size_t i = 0; i < shown.size(); ++i) {
         const int left = margin + static_cast<int>(i % columns) * (tile_width + gap);

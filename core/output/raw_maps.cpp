@@ -39,7 +39,7 @@ Json description(const MapSet& maps, const std::string& primaries, double scale)
     for (int face = 0; face < cube_faces; ++face) page["faces"].push_back(std::string(cube_face_name(face)));
     page["rows"] = "from the top";
     page["scale"] = scale;
-    page["exponent"] = maps.exponent;
+    for (const auto& [name, value] : maps.parameters) page[name] = value;
     for (const auto& [key, value] : map_metadata(maps, "all"))
         if (key == "hairbake:model" || key == "hairbake:units" || key == "hairbake:frame")
             page[key.substr(key.find(':') + 1)] = value;

@@ -79,6 +79,16 @@ void check_environment(const EnvironmentSettings& settings) {
 }
 
 /// Checks the parameters of the chosen model alone.
+/// Known before the bake, so said before it.
+void check_maps(const BakeRequest& request) {
+    if (!request.environment || entry_of(request.fiber.model).has_maps) return;
+    std::string allowed;
+    for (const FiberModelEntry& entry : fiber_models)
+        if (entry.has_maps) allowed += (allowed.empty() ? "" : ", ") + std::string(entry.name);
+    refuse("fiber.model", std::string(name_of(request.fiber.model)) + ", which has no irradiance maps yet",
+           "one of " + allowed + ", or a request without environment");
+}
+
 void check_fiber(const FiberSettings& settings) {
     for (const FiberNumber& number : fiber_numbers)
         if (number.model == settings.model) check_range(path_of(number), number.of(settings), number.low, number.high);
@@ -139,6 +149,7 @@ void validate(const BakeRequest& request) {
     check_transmittance(request.transmittance);
     check_environment(request.environment_settings);
     check_fiber(request.fiber);
+    check_maps(request);
     check_irradiance(request.irradiance);
     check_occluder(request);
     check_outputs(request);

@@ -31,7 +31,7 @@ struct BakeRequest {
     bool wants(const std::string& format) const;
 };
 
-/// Names of the outputs: npy, exr, hair, ktx2, dds, raw, glb, vdb. The request's schema has the list.
+/// Names of the outputs, as the request's schema lists them: "npy", "exr" ...
 const std::vector<std::string>& output_formats();
 
 /// Throws Error(usage) naming the first field out of range, what was found and what is allowed. A request that passes

@@ -40,8 +40,16 @@ std::size_t MapSet::cube_count() const {
     return count;
 }
 
-MapSet to_map_set(IrradianceMaps& maps, const std::string& model) {
-    MapSet set{model, maps.exponent, maps.face_size, {}};
+double MapSet::parameter(std::string_view name) const {
+    for (const auto& [parameter, value] : parameters)
+        if (parameter == name) return value;
+    return 0;
+}
+
+MapSet to_map_set(IrradianceMaps& maps, const FiberSettings& fiber) {
+    MapSet set{std::string(name_of(fiber.model)), {}, maps.face_size, {}};
+    for (const FiberNumber& number : fiber_numbers)
+        if (number.model == fiber.model) set.parameters.emplace_back(number.name, number.of(fiber));
     MapLobe diffuse{"diffuse", {}, 1, {}, {maps.diffuse_statistics}};
     diffuse.cubes.push_back(std::move(maps.diffuse));
     MapLobe specular{"specular", theta_prime_degrees(maps.specular.size()), 1, {}, maps.specular_statistics};
@@ -53,7 +61,7 @@ MapSet to_map_set(IrradianceMaps& maps, const std::string& model) {
 IrradianceMaps to_irradiance_maps(MapSet set) {
     IrradianceMaps maps;
     maps.face_size = set.face_size;
-    maps.exponent = set.exponent;
+    maps.exponent = set.parameter("exponent");
     for (MapLobe& lobe : set.lobes)
         if (lobe.name == "diffuse")
             maps.diffuse = std::move(lobe.cubes.at(0));

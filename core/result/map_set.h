@@ -2,9 +2,12 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/environment/cube_map.h"
+#include "core/fiber/fiber_settings.h"
 #include "core/irradiance/irradiance_maps.h"
 
 namespace hairbake {
@@ -27,20 +30,22 @@ struct MapLobe {
 
 /// All maps of a stage. Values are radiance times steradian; the factors of the lobes (Kd, Ks) are not applied.
 struct MapSet {
-    std::string model;    ///< fibre model that the maps are for
-    double exponent = 0;  ///< of Kajiya-Kay
-    int face_size = 0;    ///< texels on a cube's edge
+    std::string model;                                       ///< fibre model that the maps are for
+    std::vector<std::pair<std::string, double>> parameters;  ///< of the model: {"exponent", 64}
+    int face_size = 0;                                       ///< texels on a cube's edge
     std::vector<MapLobe> lobes;
 
+    /// 0 where the model has no parameter of this name.
+    double parameter(std::string_view name) const;
     /// Null where there is no lobe of this name.
     const MapLobe* find(std::string_view name) const;
     std::size_t cube_count() const;
 };
 
-/// The diffuse and specular maps of Kajiya-Kay, moved out of `maps`.
-MapSet to_map_set(IrradianceMaps& maps, const std::string& model);
+/// The diffuse and specular maps of the chosen model, moved out of `maps`.
+MapSet to_map_set(IrradianceMaps& maps, const FiberSettings& fiber);
 
-/// The other way, for looking maps up: texels, face size and exponent, without statistics.
+/// The other way, for looking maps up: texels, face size and the exponent of Kajiya-Kay, without statistics.
 IrradianceMaps to_irradiance_maps(MapSet set);
 
 }  // namespace hairbake

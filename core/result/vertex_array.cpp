@@ -5,8 +5,6 @@
 namespace hairbake {
 namespace {
 
-enum { average, sh, bent_cone, receiver };
-
 constexpr ArrayKind table[] = {
     {"transmittance", "average transmittance A of every vertex", ArrayOwner::hair, ArrayLayout::scalar,
      [](const BakeRequest& request) -> std::size_t { return request.hair ? 1 : 0; }, true},
@@ -29,18 +27,31 @@ constexpr ArrayKind table[] = {
      [](const BakeRequest& request) -> std::size_t { return request.receiver ? 2 : 0; }, true},
 };
 
+/// Stops the compiler for a name that is not in the table.
+consteval const ArrayKind& row(std::string_view name) {
+    for (const ArrayKind& kind : table)
+        if (kind.name == name) return kind;
+    throw "no such row";
+}
+
 }  // namespace
 
 std::span<const ArrayKind> array_kinds() { return table; }
 
-const ArrayKind& average_transmittance_kind() { return table[average]; }
-const ArrayKind& transmittance_sh_kind() { return table[sh]; }
-const ArrayKind& bent_cone_kind() { return table[bent_cone]; }
-const ArrayKind& receiver_kind() { return table[receiver]; }
+const ArrayKind& average_transmittance_kind() { return row("transmittance"); }
+const ArrayKind& transmittance_sh_kind() { return row("transmittance_sh"); }
+const ArrayKind& bent_cone_kind() { return row("bent_cone"); }
+const ArrayKind& receiver_kind() { return row("receiver"); }
 
 std::vector<std::size_t> VertexArray::shape() const {
     if (kind->layout == ArrayLayout::scalar) return {rows()};
     return {rows(), components};
+}
+
+const ArrayKind* find_array_kind(std::string_view name) {
+    for (const ArrayKind& kind : table)
+        if (kind.name == name) return &kind;
+    return nullptr;
 }
 
 const VertexArray* find_array(std::span<const VertexArray> arrays, const ArrayKind& kind) {

@@ -37,6 +37,9 @@ struct ArrayKind {
 /// All kinds, in the order in which a result lists them.
 std::span<const ArrayKind> array_kinds();
 
+/// Null where there is no kind of this name.
+const ArrayKind* find_array_kind(std::string_view name);
+
 /// The kinds that other code asks for by their meaning: A, T(x, l) as spherical harmonics, the bent cone, and the
 /// shadow on the receiver.
 const ArrayKind& average_transmittance_kind();

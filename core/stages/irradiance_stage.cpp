@@ -10,7 +10,7 @@ void run_irradiance_stage(StageContext& context, StagePart& part) {
         maps = bake_irradiance(context.inputs.environment(), settings, context.request.fiber, progress);
     });
     part.warnings = std::move(maps.warnings);
-    part.maps = to_map_set(maps, std::string(name_of(context.request.fiber.model)));
+    part.maps = to_map_set(maps, context.request.fiber);
     part.facts = IrradianceFacts{std::move(maps.environment_sh),
                                  maps.environment_sh_bands,
                                  maps.interpolation_bound,

@@ -84,9 +84,12 @@ void run_transmittance_stage(StageContext& context, StagePart& part) {
     add_array(part, request, transmittance_sh_kind(), std::move(baked.sh));
     add_array(part, request, bent_cone_kind(), std::move(baked.bent_cone));
     add_array(part, request, receiver_kind(), std::move(baked.receiver));
-    for (NamedArray& other : baked.others)
-        for (const ArrayKind& kind : array_kinds())
-            if (kind.name == other.name) add_array(part, request, kind, std::move(other.values));
+    for (NamedArray& other : baked.others) {
+        const ArrayKind* kind = find_array_kind(other.name);
+        if (!kind)
+            throw Error(ErrorKind::internal, "the array " + std::string(other.name) + " is in no row of array_kinds()");
+        add_array(part, request, *kind, std::move(other.values));
+    }
     part.facts = std::move(facts);
 }
 

@@ -14,6 +14,6 @@ std::unique_ptr<Functional> make_vertex_moments(const FunctionalInput& input);
 /// The receiver's means over the hemisphere (receiver_hemisphere.cpp).
 std::unique_ptr<Functional> make_receiver_hemisphere(const FunctionalInput& input);
 
-constexpr std::array<MakeFunctional, 2> kFunctionals{make_vertex_moments, make_receiver_hemisphere};
+constexpr MakeFunctional kFunctionals[] = {make_vertex_moments, make_receiver_hemisphere};
 
 }  // namespace hairbake

@@ -30,6 +30,7 @@ TEST(FiberModels, EveryModelIsMadeByItsDefaultsAndHasLobes) {
         EXPECT_GE(model->lobes().size(), 1u) << entry.name;
         EXPECT_LE(model->lobes().size(), most_lobes) << entry.name;
         EXPECT_TRUE(model->is_zonal() || !model->zonal_kernels()) << entry.name;
+        EXPECT_EQ(entry.has_maps, model->zonal_kernels() != nullptr) << entry.name;
         EXPECT_GT(model->sharpness(), 0) << entry.name;
         EXPECT_EQ(name_of(entry.kind), entry.name);
     }

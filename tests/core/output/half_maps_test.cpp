@@ -29,7 +29,7 @@ MapSet maps_of(int face_size, const std::vector<CubeTexels>& cubes) {
     maps.exponent = 64;
     maps.diffuse = cubes.at(0);
     maps.specular.assign(cubes.begin() + 1, cubes.end());
-    return to_map_set(maps, "kajiya-kay");
+    return to_map_set(maps, FiberSettings{});
 }
 
 /// Every texel and channel distinct, over five decades below `largest`, which one of them is.

@@ -69,7 +69,7 @@ TEST(HalfScale, OfMapsIsThatOfTheLargestMagnitudeOfAllOfThem) {
     kajiya_kay.face_size = 4;
     kajiya_kay.diffuse.assign(96, Vec3f(1));
     kajiya_kay.specular.assign(3, CubeTexels(96, Vec3f(1)));
-    MapSet maps = to_map_set(kajiya_kay, "kajiya-kay");
+    MapSet maps = to_map_set(kajiya_kay, FiberSettings{});
     EXPECT_EQ(half_scale(maps), 1);
     maps.lobes[1].cubes[2][95].z = -1e5f;  // maps by SH may be negative
     EXPECT_EQ(half_scale(maps), 2);

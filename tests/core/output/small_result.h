@@ -75,7 +75,7 @@ inline BakeResult small_result() {
     StagePart irradiance;
     irradiance.stage = find_stage("irradiance");
     irradiance.key = "dd";
-    irradiance.maps = to_map_set(maps, "kajiya-kay");
+    irradiance.maps = to_map_set(maps, FiberSettings{});
     IrradianceFacts facts;
     facts.environment_sh_bands = 2;
     facts.environment_sh = {{1, 2, 3}, {0.1, 0.2, 0.3}, {1e-20, 0, -5}, {7, 8, 9}};

@@ -1,6 +1,7 @@
 // Requests and the keys that the first version (commit 8908c4a) gave them: what a store of it holds must be found.
 #include <gtest/gtest.h>
 
+#include "core/request/request_fields.h"
 #include "core/request/request_json.h"
 #include "core/request/request_presets.h"
 #include "core/request/stages.h"
@@ -105,7 +106,16 @@ TEST(FirstVersionIds, ThePresetV1GivesTheIdsOfTheFirstDefaults) {
     EXPECT_EQ(keys_of(request), pinned(pins[0]));
 }
 
-TEST(FirstVersionIds, ThePresetV1NamesEveryFieldOfTheFirstVersion) {
+TEST(FirstVersionIds, ThePresetV1GivesLaterFieldsTheMeaningOfTheFirstVersion) {
+    BakeRequest request;
+    apply_preset(request, "v1");
+    for (const RequestField& field : request_fields())
+        if (field.first_value) {
+            EXPECT_EQ(field.get(request), *field.first_value) << field.path;
+        }
+}
+
+TEST(FirstVersionIds, ThePresetV1SetsEveryFieldBack) {
     // Every setting is given another value than the preset's; the preset sets them all back.
     BakeRequest request;
     merge_json(request, R"({
