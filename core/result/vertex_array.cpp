@@ -6,11 +6,11 @@ namespace hairbake {
 namespace {
 
 constexpr ArrayKind table[] = {
-    {"transmittance", "average transmittance A of every vertex", ArrayOwner::hair, ArrayLayout::scalar,
+    {"transmittance", "average transmittance A of every vertex", "transmittance", ArrayOwner::hair, ArrayLayout::scalar,
      [](const BakeRequest& request) -> std::size_t { return request.hair ? 1 : 0; }, true},
     {"transmittance_sh",
      "spherical harmonics of every vertex's transmittance, order l*l + l + m, z polar; A = c_0 / (2 sqrt(pi))",
-     ArrayOwner::hair, ArrayLayout::coefficients,
+     "transmittance", ArrayOwner::hair, ArrayLayout::coefficients,
      [](const BakeRequest& request) {
          const auto bands = static_cast<std::size_t>(request.hair ? request.transmittance.sh_bands : 0);
          return bands * bands;
@@ -18,12 +18,12 @@ constexpr ArrayKind table[] = {
      false},
     {"bent_cone",
      "bent cone of every vertex: unit axis and half-angle in radians; 0, 0, 0, pi where nothing is blocked",
-     ArrayOwner::hair, ArrayLayout::vector,
+     "transmittance", ArrayOwner::hair, ArrayLayout::vector,
      [](const BakeRequest& request) -> std::size_t { return request.hair && request.transmittance.bent_cone ? 4 : 0; },
      false},
     {"receiver",
      "transmittance over the hemisphere about every receiver vertex's normal: mean, and cosine-weighted mean",
-     ArrayOwner::receiver, ArrayLayout::vector,
+     "transmittance", ArrayOwner::receiver, ArrayLayout::vector,
      [](const BakeRequest& request) -> std::size_t { return request.receiver ? 2 : 0; }, true},
 };
 

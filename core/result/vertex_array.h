@@ -28,6 +28,7 @@ enum class ArrayLayout {
 struct ArrayKind {
     std::string_view name;     ///< of the array and of its file NAME.npy
     std::string_view meaning;  ///< one line for people
+    std::string_view stage;    ///< that makes it
     ArrayOwner owner;
     ArrayLayout layout;
     std::size_t (*components)(const BakeRequest&);  ///< a row; 0 where the request does not ask for the array

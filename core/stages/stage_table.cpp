@@ -3,11 +3,14 @@
 #include "core/base/error.h"
 
 namespace hairbake {
+
+StageFunction run_transmittance_stage, run_irradiance_stage;
+
 namespace {
 
 struct StageCode {
     std::string_view stage;
-    void (*run)(StageContext&, StagePart&);
+    StageFunction* run;
 };
 
 constexpr StageCode table[] = {

@@ -19,8 +19,8 @@ struct StageContext {
 /// Throws Error as bake().
 StagePart run_stage(const Stage& stage, StageContext& context);
 
-// One function a stage, each in a file of its own. `part` comes with stage and key; the function fills in the rest.
-void run_transmittance_stage(StageContext& context, StagePart& part);
-void run_irradiance_stage(StageContext& context, StagePart& part);
+/// The code of one stage, in a file of its own (stage_table.cpp declares them all). `part` comes with stage and key; the
+/// function fills in the rest.
+using StageFunction = void(StageContext& context, StagePart& part);
 
 }  // namespace hairbake

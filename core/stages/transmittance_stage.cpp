@@ -46,9 +46,24 @@ Transmittance transmittance_of(const TransmittanceScene& baked, const Transmitta
     return bake_transmittance_volume(baked, settings, progress);
 }
 
-void add_array(StagePart& part, const BakeRequest& request, const ArrayKind& kind, std::vector<float> values) {
-    if (const std::size_t components = kind.components(request))
-        part.arrays.push_back({&kind, components, std::move(values)});
+std::vector<float>& values_of(Transmittance& baked, const ArrayKind& kind) {
+    if (&kind == &average_transmittance_kind()) return baked.average;
+    if (&kind == &transmittance_sh_kind()) return baked.sh;
+    if (&kind == &bent_cone_kind()) return baked.bent_cone;
+    if (&kind == &receiver_kind()) return baked.receiver;
+    for (NamedArray& other : baked.others)
+        if (other.name == kind.name) return other.values;
+    return baked.others.emplace_back(NamedArray{kind.name, {}}).values;  // of a model without vertices
+}
+
+/// Every array of this stage that the request asks for, also where the model has no vertices.
+void add_arrays(Transmittance& baked, const BakeRequest& request, StagePart& part) {
+    for (const NamedArray& other : baked.others)
+        if (!find_array_kind(other.name))
+            throw Error(ErrorKind::internal, "the array " + std::string(other.name) + " is in no row of array_kinds()");
+    for (const ArrayKind& kind : array_kinds())
+        if (const std::size_t components = kind.components(request); components && kind.stage == part.stage->name)
+            part.arrays.push_back({&kind, components, std::move(values_of(baked, kind))});
 }
 
 }  // namespace
@@ -80,16 +95,7 @@ void run_transmittance_stage(StageContext& context, StagePart& part) {
     facts.voxel_size = baked.voxel_size;
     facts.occupied_voxels = baked.occupied_voxels;
     facts.density = std::move(baked.density);
-    add_array(part, request, average_transmittance_kind(), std::move(baked.average));
-    add_array(part, request, transmittance_sh_kind(), std::move(baked.sh));
-    add_array(part, request, bent_cone_kind(), std::move(baked.bent_cone));
-    add_array(part, request, receiver_kind(), std::move(baked.receiver));
-    for (NamedArray& other : baked.others) {
-        const ArrayKind* kind = find_array_kind(other.name);
-        if (!kind)
-            throw Error(ErrorKind::internal, "the array " + std::string(other.name) + " is in no row of array_kinds()");
-        add_array(part, request, *kind, std::move(other.values));
-    }
+    add_arrays(baked, request, part);
     part.facts = std::move(facts);
 }
 
