@@ -40,6 +40,8 @@ Json error_bar(const ErrorBar& bar) {
             {"directions", bar.directions}};
 }
 
+Json describe(const std::monostate&, const StagePart&, const BakeRequest&) { return Json::object(); }
+
 Json describe(const TransmittanceFacts& facts, const StagePart& part, const BakeRequest& request) {
     const std::vector<float>& average = find_array(part.arrays, average_transmittance_kind())->values;
     double sum = 0;

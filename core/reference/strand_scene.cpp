@@ -57,15 +57,18 @@ RTCSceneTy* StrandScene::new_scene(Progress& progress) {
 }
 
 void StrandScene::build(Progress& progress) {
-    scene_ = new_scene(progress);
+    ProgressPart curves = progress.part(0, occluder_ ? 0.9 : 1), triangles = progress.part(0.9, 1);
+    scene_ = new_scene(curves);
     rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
     attach_curves();
     rtcCommitScene(scene_);
+    rtcSetSceneProgressMonitorFunction(scene_, nullptr, nullptr);  // what it told is gone after this function
     if (!occluder_) return;
-    occluder_scene_ = new_scene(progress);
+    occluder_scene_ = new_scene(triangles);
     rtcSetSceneFlags(occluder_scene_, RTC_SCENE_FLAG_ROBUST);  // no ray passes between two adjacent triangles
     attach_triangles();
     rtcCommitScene(occluder_scene_);
+    rtcSetSceneProgressMonitorFunction(occluder_scene_, nullptr, nullptr);
 }
 
 void StrandScene::attach_curves() {

@@ -36,8 +36,9 @@ struct IrradianceFacts {
     double predicted_error_diffuse = 0, predicted_error_specular = 0;
 };
 
-/// A new stage adds a struct of facts here, and a function in core/output/manifest_stages.cpp that describes it.
-using StageFacts = std::variant<TransmittanceFacts, IrradianceFacts>;
+/// A stage that has something to tell in the manifest adds a struct of facts here, and a function in
+/// core/output/manifest_stages.cpp that describes it.
+using StageFacts = std::variant<std::monostate, TransmittanceFacts, IrradianceFacts>;
 
 struct StagePart {
     const Stage* stage = nullptr;

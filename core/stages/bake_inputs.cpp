@@ -48,6 +48,18 @@ bool reads(const Stage& stage, std::string_view input) {
     return std::find(stage.inputs.begin(), stage.inputs.end(), input) != stage.inputs.end();
 }
 
+HairFacts facts_of(const HairModel& model) {
+    HairFacts facts{model.strand_count(), model.vertex_count(), model.vertex_count() - model.strand_count(), {}, {}};
+    if (model.positions.empty()) return facts;
+    facts.bounds_min = facts.bounds_max = model.positions[0];
+    for (const Vec3f& p : model.positions)
+        for (int axis = 0; axis < 3; ++axis) {
+            facts.bounds_min[axis] = std::min(facts.bounds_min[axis], p[axis]);
+            facts.bounds_max[axis] = std::max(facts.bounds_max[axis], p[axis]);
+        }
+    return facts;
+}
+
 MeshFacts facts_of(const TriangleMesh& mesh) { return {mesh.positions.size(), mesh.triangles.size(), {}}; }
 
 }  // namespace
@@ -69,6 +81,7 @@ void BakeInputs::read_hair_and_meshes(Progress& progress) {
     if (request_.receiver) facts_.digests["receiver"] = digest_of_file(*request_.receiver);
     progress.check();
     Groom groom = read_groom(*request_.hair, {request_.strand.time});
+    facts_.hair = facts_of(groom.model);
     hair_ = std::move(groom.model);
     facts_.hair_extras = groom.extras;
     warnings_.insert(warnings_.end(), groom.warnings.begin(), groom.warnings.end());
@@ -109,8 +122,6 @@ const StrandGeometry& BakeInputs::strands() {
     HAIRBAKE_ASSERT(hair_.has_value());
     if (strands_) return *strands_;
     naming_file(*request_.hair, [&] { strands_ = make_strand_geometry(*hair_, request_.strand); });
-    facts_.hair = {strands_->strand_count(), strands_->vertex_count(), strands_->segment_count, strands_->bounds_min,
-                   strands_->bounds_max};
     return *strands_;
 }
 

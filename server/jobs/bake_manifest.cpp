@@ -21,7 +21,8 @@ Json merged(const Parts& parts, const char* block) {
 Json joined(const Parts& parts, const char* list) {
     Json whole = Json::array();
     for (const auto& [kind, part] : parts)
-        for (const Json& item : part.value(list, Json::array())) whole.push_back(item);
+        for (const Json& item : part.value(list, Json::array()))
+            if (std::find(whole.begin(), whole.end(), item) == whole.end()) whole.push_back(item);  // of a shared input
     return whole;
 }
 

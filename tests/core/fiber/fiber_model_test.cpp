@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "core/fiber/kajiya_kay.h"
+#include "tests/support/kajiya_kay.h"
 
 namespace hairbake {
 namespace {
@@ -19,8 +20,6 @@ Vec3d random_direction(Random& random) {
     const double z = 2 * random.next() - 1, phi = 2 * pi * random.next(), sine = std::sqrt(1 - z * z);
     return {sine * std::cos(phi), sine * std::sin(phi), z};
 }
-
-FiberSettings of_exponent(double exponent) { return {FiberModelKind::kajiya_kay, {exponent}}; }
 
 TEST(FiberModels, EveryModelIsMadeByItsDefaultsAndHasLobes) {
     for (const FiberModelEntry& entry : fiber_models) {
@@ -38,7 +37,7 @@ TEST(FiberModels, EveryModelIsMadeByItsDefaultsAndHasLobes) {
 
 TEST(FiberModels, AParameterOutOfRangeIsNamed) {
     for (const double exponent : {-1.0, 4097.0, std::numeric_limits<double>::quiet_NaN()}) try {
-            make_fiber_model(of_exponent(exponent));
+            make_fiber_model(testing::kajiya_kay(exponent));
             FAIL() << exponent << " was allowed";
         } catch (const Error& error) {
             EXPECT_EQ(error.kind(), ErrorKind::usage);
@@ -80,7 +79,7 @@ TEST(KajiyaKayModel, ItsBlockIsTheKernelsInSinglePrecision) {
     }
     KernelBlock kernels;
     for (const double exponent : {0.0, 1.0, 2.5, 64.0}) {
-        make_fiber_model(of_exponent(exponent))->evaluate({x.data(), y.data(), z.data()}, {t, eye}, kernels);
+        make_fiber_model(testing::kajiya_kay(exponent))->evaluate({x.data(), y.data(), z.data()}, {t, eye}, kernels);
         EXPECT_TRUE(std::isfinite(kernels.values[diffuse_lobe][0][0]));
         EXPECT_TRUE(std::isfinite(kernels.values[specular_lobe][0][0]));
         for (std::size_t i = 1; i < light_block; ++i) {
@@ -93,7 +92,7 @@ TEST(KajiyaKayModel, ItsBlockIsTheKernelsInSinglePrecision) {
 }
 
 TEST(KajiyaKayModel, AnglesAndTheirSinesGiveTheSameZonalKernels) {
-    const auto model = make_fiber_model(of_exponent(5));
+    const auto model = make_fiber_model(testing::kajiya_kay(5));
     ASSERT_TRUE(model->zonal_kernels());
     const ZonalKernels& kernels = *model->zonal_kernels();
     for (double light = 0; light < pi; light += 0.1)
