@@ -214,7 +214,7 @@ def upload(client: Client, arguments: Arguments, display: Display) -> None:
         display.line(f"{reference} {file}", "stored", file=file, reference=reference)
 
 
-def parser() -> argparse.ArgumentParser:
+def connection_options() -> argparse.ArgumentParser:
     common = argparse.ArgumentParser(add_help=False)
     common.add_argument("--server", default=os.environ.get("HAIRBAKE_SERVER"),
                         help="http://HOST:PORT (HAIRBAKE_SERVER)")
@@ -223,11 +223,20 @@ def parser() -> argparse.ArgumentParser:
     common.add_argument("--ca-file", help="certificates (PEM) to trust instead of the system's")
     common.add_argument("--patience", type=float, default=120, help="seconds of retries; default 120")
     common.add_argument("--progress", choices=("auto", "json", "none"), default="auto")
+    return common
+
+
+def priority_options() -> argparse.ArgumentParser:
     priority = argparse.ArgumentParser(add_help=False)
     priority.add_argument("--priority", type=int, default=0, help="-10 to 10: higher ones are baked first")
     priority.add_argument("--wait", action="store_true", help="wait until the bakes have ended")
     priority.add_argument("--fetch", metavar="DIR",
                           help="wait, then fetch; several bakes: each into its own folder in DIR")
+    return priority
+
+
+def parser() -> argparse.ArgumentParser:
+    common, priority = connection_options(), priority_options()
     main_parser = argparse.ArgumentParser(prog="python3 -m hairbake", description=__doc__, epilog=EPILOG)
     commands = main_parser.add_subparsers(dest="command", required=True)
 
