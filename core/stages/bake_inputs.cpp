@@ -51,12 +51,13 @@ bool reads(const Stage& stage, std::string_view input) {
 HairFacts facts_of(const HairModel& model) {
     HairFacts facts{model.strand_count(), model.vertex_count(), model.vertex_count() - model.strand_count(), {}, {}};
     if (model.positions.empty()) return facts;
-    facts.bounds_min = facts.bounds_max = model.positions[0];
-    for (const Vec3f& p : model.positions)
-        for (int axis = 0; axis < 3; ++axis) {
-            facts.bounds_min[axis] = std::min(facts.bounds_min[axis], p[axis]);
-            facts.bounds_max[axis] = std::max(facts.bounds_max[axis], p[axis]);
-        }
+    Vec3f low = model.positions[0], high = low;
+    for (const Vec3f& p : model.positions) {
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    facts.bounds_min = low;
+    facts.bounds_max = high;
     return facts;
 }
 
