@@ -40,6 +40,13 @@ std::string advice(int status) {
     return "";
 }
 
+/// Says what the header Warning has in quotes: 299 - "the request: irradiance.tint is deprecated".
+void tell_warning(const HttpAnswer& answer) {
+    const std::string header = answer.header("warning");
+    const std::size_t begin = header.find('"'), end = header.rfind('"');
+    if (begin < end) say_warning(plain(header.substr(begin + 1, end - begin - 1)));
+}
+
 }  // namespace
 
 void pause(double seconds, const Progress& progress) {
@@ -96,6 +103,7 @@ Json Server::json(const std::string& method, const std::string& path, const std:
     if (!body.empty()) call.headers.emplace_back("Content-Type: application/json");
     const HttpAnswer answer = ask(call);
     if (answer.status < 200 || answer.status > 299) refuse(answer);
+    tell_warning(answer);
     return parse_json(answer.body);
 }
 

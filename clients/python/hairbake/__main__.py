@@ -18,6 +18,10 @@ from ._http import identifier
 EPILOG = """exit codes: 0 done, 2 usage, 3 bad input, 5 interrupted (the bake continues on the server), 6 server
 unreachable, 7 refused, 8 bake failed, 9 bake cancelled on the server"""
 Arguments = argparse.Namespace
+#: Fields of the block irradiance in the first version, and their places now.
+MOVED = {"model": "fiber.model", "exponent": "fiber.kajiya_kay.exponent",
+         **{name: f"environment_settings.{name}" for name in
+            ("layout", "latlong", "rotation_deg", "exposure_stops", "tint", "invalid_radiance")}}
 LIGHTING_BLOCKS = ("irradiance", "environment_settings", "fiber")  #: of the request: `rebake` may change them
 
 
@@ -48,6 +52,21 @@ class Display:
             print(text, flush=True)
 
 
+def move_deprecated(request: Dict[str, Any], source: str) -> None:
+    """Moves fields from the places of the first version to their own. Prints a warning for each."""
+    old = request.get("irradiance")
+    for name in [name for name in MOVED if isinstance(old, dict) and name in old]:
+        *blocks, last = MOVED[name].split(".")
+        block = request
+        for part in blocks:
+            block = block.setdefault(part, {})
+        if last in block:
+            raise UsageError(f"{source}: {MOVED[name]} is given twice, also as irradiance.{name}; allowed is once", MOVED[name])
+        block[last] = old.pop(name)
+        print(f"hairbake: warning: {source}: irradiance.{name} is deprecated: the field is now {MOVED[name]}",
+              file=sys.stderr)
+
+
 def set_field(request: Dict[str, Any], setting: str) -> None:
     path, sign, value = setting.partition("=")
     if not sign:
@@ -56,6 +75,10 @@ def set_field(request: Dict[str, Any], setting: str) -> None:
         parsed = json.loads(value)
     except (ValueError, RecursionError):
         parsed = value
+    first, _, name = path.partition(".")
+    if first == "irradiance" and name in MOVED:
+        print(f"hairbake: warning: {path} is deprecated: the field is now {MOVED[name]}", file=sys.stderr)
+        path = MOVED[name]
     *blocks, last = path.split(".")
     for block in blocks:
         request = request.setdefault(block, {})
@@ -74,6 +97,7 @@ def make_request(arguments: Arguments) -> Dict[str, Any]:
             raise HairbakeError(f"{arguments.request}: {error}", "request") from error
         if not isinstance(request, dict):
             raise UsageError(f"{arguments.request} is not a JSON object", "request")
+        move_deprecated(request, arguments.request)
     for field in ("environment", "occluder", "receiver"):
         if getattr(arguments, field):
             request[field] = getattr(arguments, field)

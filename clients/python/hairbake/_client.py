@@ -133,7 +133,8 @@ class Client:
                occluder: Optional[PathLike] = None, receiver: Optional[PathLike] = None, priority: int = 0,
                **fields: Any) -> Bake:
         """Posts the request for a bake. A request whose result is stored is done at once. `fields` are the other
-        blocks of the request: strand={...}, transmittance={...}, irradiance={...}, outputs=[...]."""
+        blocks of the request: strand={...}, transmittance={...}, fiber={...}, environment_settings={...},
+        irradiance={...}, outputs=[...]."""
         request: Json = {**fields, "priority": priority}
         inputs = {"hair": hair, "environment": environment, "occluder": occluder, "receiver": receiver}
         for field, value in inputs.items():
@@ -273,7 +274,7 @@ class Client:
             body["name"] = name
         if models is not None:
             body["models"] = [self._reference(model) for model in models]
-        body.update((block, dict(fields)) for block, fields in blocks.items())
+        body.update((block, dict(fields)) for block, fields in blocks.items() if fields is not None)
         return self._http.json("POST", f"/v1/rebakes{query}", body)
 
 

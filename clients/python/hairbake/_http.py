@@ -8,6 +8,7 @@ import ssl
 import sys
 import time
 import urllib.parse
+import warnings
 from typing import Any, Callable, Dict, Iterator, Mapping, Optional
 
 from ._errors import ConnectionLost, Refused, Unreachable, UsageError, plain
@@ -139,6 +140,9 @@ class Http:
         answer = self.ask(method, path, {"Content-Type": "application/json"} if data else None, data)
         if not 200 <= answer.status < 300:
             raise answer.refuse()
+        warning = re.search('"(.*)"', answer.headers.get("warning", ""))
+        if warning:
+            warnings.warn(plain(warning.group(1)), FutureWarning, stacklevel=3)
         return answer.json()
 
     def _connection(self) -> http.client.HTTPConnection:

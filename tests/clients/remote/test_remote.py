@@ -140,6 +140,15 @@ class Jobs:
         self.assertIn(daemon.ask("GET", f"/v1/bakes/{bake}").json["state"], ("queued", "running"))
         self.run_ok("cancel", bake, url=daemon.url)
 
+    def test_a_field_at_its_first_place_gives_way_to_a_later_setting(self):
+        daemon = self.daemon()
+        old = self.shop.write("old.json", json.dumps({"irradiance": {"exponent": 11, "face_size": 4}}).encode())
+        done = self.run_ok("submit", "--env", self.sky, "--outputs", "npy", "--request", old, "--set",
+                           "fiber.kajiya_kay.exponent=12", "--wait", url=daemon.url)
+        self.assertIn("irradiance.exponent is deprecated", done.err)
+        request = daemon.ask("GET", f"/v1/bakes/{first_word(done.out)}").json["request"]
+        self.assertEqual(request["fiber"]["kajiya_kay"]["exponent"], 12)
+
     def test_rebake_computes_no_transmittance_again(self):
         daemon = self.daemon()
         bake = first_word(self.run_ok("submit", "--hair", self.hair, "--env", self.sky, *QUICK, "--fetch", "old",
@@ -153,6 +162,9 @@ class Jobs:
                     "--fiber", '{"kajiya_kay": {"exponent": 8}}', "--dry-run"]
         self.assertIn('"irradiance": 1' if self.command == PYTHON else "0 transmittance and 1 irradiance stages would be computed",
                       self.run_ok(*brighter, url=daemon.url).out)
+        old_place = self.run_ok("rebake", "--env", dusk, "--bake", bake, "--irradiance", '{"exponent": 8}', "--dry-run",
+                                url=daemon.url)
+        self.assertIn("irradiance.exponent is deprecated", old_place.err)
         done = self.run_ok("rebake", "--env", dusk, "--replaces", self.sky, "--fetch", "new", url=daemon.url)
         again = first_word(done.out)
         old, new = self.shop.files("old"), self.shop.files(f"new/{again}")
