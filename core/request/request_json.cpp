@@ -155,6 +155,11 @@ std::vector<std::string> set_field(BakeRequest& request, const std::string& path
     return warning.empty() ? std::vector<std::string>() : std::vector{std::move(warning)};
 }
 
+std::string first_place_of(const std::string& path) {
+    const RequestField* field = find_field(path);
+    return field ? field->first_path : std::string();
+}
+
 std::vector<std::string> field_paths() {
     std::vector<std::string> paths;
     for (const RequestField& field : request_fields()) paths.push_back(field.path);

@@ -26,6 +26,9 @@ std::vector<std::string> merge_json(BakeRequest& request, std::string_view text,
 /// Returns and throws as merge_json.
 std::vector<std::string> set_field(BakeRequest& request, const std::string& path, const std::string& value);
 
+/// Where the first version had the field of this path; empty where the place is the same, or there is no such field.
+std::string first_place_of(const std::string& path);
+
 /// Paths of all fields, "irradiance.sh_bands.diffuse" and the like, in the order of to_json.
 std::vector<std::string> field_paths();
 

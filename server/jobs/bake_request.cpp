@@ -105,6 +105,17 @@ void check_inputs_stored(Sql& sql, const BakeRequest& request, const StagePlan& 
 
 }  // namespace
 
+namespace {
+
+/// Where the body has the field: at its own place, or at its deprecated one.
+std::string place_in(const std::string& body, const std::string& field) {
+    const std::string first = first_place_of(field);
+    if (first.empty() || first == field) return field;
+    return parse(body).contains(Json::json_pointer(pointer_to(first))) ? first : field;
+}
+
+}  // namespace
+
 AskedBake read_bake_request(Sql& sql, const std::string& text, const std::optional<std::string>& changes) {
     const Body body = split_body(text), change = changes ? split_body(*changes) : Body();
     AskedBake asked;
@@ -114,7 +125,8 @@ AskedBake read_bake_request(Sql& sql, const std::string& text, const std::option
         if (changes) asked.warnings = merge_json(asked.request, change.request, "the request");
         validate(asked.request);
     } catch (const Error& error) {
-        throw Refusal(Refused::unprocessable, error.what(), error.field()).at(pointer_to(error.field()));
+        const std::string place = place_in(changes ? *changes : text, error.field());
+        throw Refusal(Refused::unprocessable, error.what(), error.field()).at(pointer_to(place));
     }
     asked.names = resolve_files(sql, asked.request).dump();
     return asked;

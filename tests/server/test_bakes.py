@@ -64,6 +64,8 @@ class Bakes(unittest.TestCase):
         self.assertEqual(len(warnings), 3)
         for field in ("irradiance.rotation_deg", "irradiance.exposure_stops", "irradiance.exponent"):
             self.assertTrue(any(w.startswith("299 - ") and field in w for w in warnings), (field, warnings))
+        wrong = self.post(quick_request(environment=self.sky, irradiance={"exponent": 99999}), status=422)
+        self.assertEqual(wrong.json["pointer"], "/irradiance/exponent")  # where the body has it
 
     def test_files_are_what_the_manifest_says(self):
         view = self.bake(quick_request(self.hair, self.sky, outputs=["npy", "exr", "hair"]))
