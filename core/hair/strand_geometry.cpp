@@ -5,6 +5,7 @@
 #include <sstream>
 #include <string>
 
+#include "core/base/bounds.h"
 #include "core/base/error.h"
 
 namespace hairbake {
@@ -38,20 +39,6 @@ std::vector<float> resolve_opacities(const HairModel& model, const StrandSetting
                         "strand.opacity");
     }
     return opacities;
-}
-
-struct Bounds {
-    Vec3f low, high;
-};
-
-Bounds bounds_of(const std::vector<Vec3f>& positions) {
-    if (positions.empty()) return {};
-    Vec3f low = positions[0], high = low;
-    for (const Vec3f& p : positions) {
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
-    return {low, high};
 }
 
 double longest_side(const StrandGeometry& geometry) {

@@ -9,6 +9,7 @@
 #include <span>
 #include <sstream>
 
+#include "core/base/bounds.h"
 #include "core/base/error.h"
 #include "core/hair/tangents.h"
 #include "core/output/format_table.h"
@@ -60,13 +61,9 @@ public:
 };
 
 void set_bounds(const std::vector<Vec3f>& positions, tinygltf::Accessor& accessor) {
-    accessor.minValues = {positions[0].x, positions[0].y, positions[0].z};
-    accessor.maxValues = accessor.minValues;
-    for (const Vec3f& p : positions)
-        for (int axis = 0; axis < 3; ++axis) {
-            accessor.minValues[axis] = std::min(accessor.minValues[axis], double(p[axis]));
-            accessor.maxValues[axis] = std::max(accessor.maxValues[axis], double(p[axis]));
-        }
+    const auto [low, high] = bounds_of(positions);
+    accessor.minValues = {low.x, low.y, low.z};
+    accessor.maxValues = {high.x, high.y, high.z};
 }
 
 /// The two ends of each segment, strand by strand.

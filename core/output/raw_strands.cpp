@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "core/base/bounds.h"
 #include "core/hair/tangents.h"
 #include "core/output/half.h"
 #include "core/output/little_endian.h"
@@ -50,14 +51,9 @@ std::vector<Half4> tangents_and_transmittance(const HairModel& model, const std:
     return halves;
 }
 
-Json bounds_of(const std::vector<Vec3f>& positions) {
+Json bounds_json(const std::vector<Vec3f>& positions) {
     if (positions.empty()) return nullptr;
-    Vec3f low = positions[0], high = positions[0];
-    for (const Vec3f& p : positions)
-        for (int axis = 0; axis < 3; ++axis) {
-            low[axis] = std::min(low[axis], p[axis]);
-            high[axis] = std::max(high[axis], p[axis]);
-        }
+    const auto [low, high] = bounds_of(positions);
     return {{low.x, low.y, low.z}, {high.x, high.y, high.z}};
 }
 
@@ -86,7 +82,7 @@ std::vector<WrittenFile> write_strand_raw(const HairModel& model, std::span<cons
                     {"byte_order", "little"},
                     {"vertices", vertices},
                     {"strands", model.strand_count()},
-                    {"bounds", bounds_of(model.positions)},
+                    {"bounds", bounds_json(model.positions)},
                     {"sh_bands", bands},
                     {"arrays", file.arrays}};
     json.write(page.dump(2) + "\n");

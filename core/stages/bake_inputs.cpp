@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/base/assert.h"
+#include "core/base/bounds.h"
 #include "core/base/digest.h"
 #include "core/base/error.h"
 #include "core/base/file_identity.h"
@@ -49,16 +50,9 @@ bool reads(const Stage& stage, std::string_view input) {
 }
 
 HairFacts facts_of(const HairModel& model) {
-    HairFacts facts{model.strand_count(), model.vertex_count(), model.vertex_count() - model.strand_count(), {}, {}};
-    if (model.positions.empty()) return facts;
-    Vec3f low = model.positions[0], high = low;
-    for (const Vec3f& p : model.positions) {
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
-    facts.bounds_min = low;
-    facts.bounds_max = high;
-    return facts;
+    const Bounds bounds = bounds_of(model.positions);
+    return {model.strand_count(), model.vertex_count(), model.vertex_count() - model.strand_count(), bounds.low,
+            bounds.high};
 }
 
 MeshFacts facts_of(const TriangleMesh& mesh) { return {mesh.positions.size(), mesh.triangles.size(), {}}; }

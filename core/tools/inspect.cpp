@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/bounds.h"
 #include "core/base/error.h"
 #include "core/environment/cube_map.h"
 #include "core/environment/environment_files.h"
@@ -55,11 +56,7 @@ Json hair_facts(const fs::path& file) {
         longest = std::max(longest, model.strand_begin[s + 1] - model.strand_begin[s]);
     facts["longest_strand"] = longest;
     if (!model.positions.empty()) {
-        Vec3f low = model.positions[0], high = low;
-        for (const Vec3f& p : model.positions) {
-            low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-            high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-        }
+        const auto [low, high] = bounds_of(model.positions);
         facts["bounds"] = {{"minimum", as_array(low)}, {"maximum", as_array(high)}};
     }
     facts["thickness"] = range_of(model.thickness, model.default_thickness);
