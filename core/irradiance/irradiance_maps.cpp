@@ -101,7 +101,8 @@ void measure_all(IrradianceMaps& maps) {
         statistics = measured(texels, solid_angles, statistics.clamped_negative_mass);
         return largest(statistics.maximum);
     };
-    double peak = measure(maps.diffuse, maps.diffuse_statistics);
+    measure(maps.diffuse, maps.diffuse_statistics);
+    double peak = 0;
     for (std::size_t m = 0; m < maps.specular.size(); ++m)
         peak = std::max(peak, measure(maps.specular[m], maps.specular_statistics[m]));
     const Vec3d& bound = maps.interpolation_bound;
@@ -132,7 +133,7 @@ std::vector<std::string> warnings_of(const IrradianceMaps& maps, const Irradianc
     if (maps.interpolation_bound_relative > 0.1)
         warnings.push_back("interpolating between " + std::to_string(settings.specular_maps) +
                            " specular maps can be wrong by up to " + percent(maps.interpolation_bound_relative) +
-                           " of the largest value; raise irradiance.specular_maps");
+                           " of their largest value; raise irradiance.specular_maps");
     return warnings;
 }
 

@@ -36,13 +36,13 @@ struct IrradianceMaps {
     int environment_sh_bands = 0;
 
     /// Bound for |linear interpolation between neighbouring theta' - truth| at any t and theta': per channel in the
-    /// unit of the maps, and relative to the largest value of all maps (interpolation_bound.h). `sh` gathers the
+    /// unit of the maps, and relative to the largest value of the specular maps (interpolation_bound.h). `sh` gathers the
     /// environment into fewer lights for it, so its bound is a little larger.
     Vec3d interpolation_bound;
     double interpolation_bound_relative = 0;
 
     /// sh only: bands used, and the predicted truncation error. The error is an RMS, relative to the largest value of
-    /// all maps before `lights` are added; lights have no such error (sh_maps.h). Zero for exact.
+    /// the lobe's own maps before `lights` are added; lights have no such error (sh_maps.h). Zero for exact.
     int sh_bands_diffuse = 0, sh_bands_specular = 0;
     double predicted_error_diffuse = 0, predicted_error_specular = 0;
 

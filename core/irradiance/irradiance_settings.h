@@ -27,7 +27,7 @@ struct IrradianceSettings {
     IrradianceMethod method = IrradianceMethod::exact;
     std::optional<int> sh_bands_diffuse;  ///< 1 to 128 bands (l = 0 .. bands - 1); empty: auto from sh_error
     std::optional<int> sh_bands_specular;
-    double sh_error = 0.01;                ///< target of auto: RMS / largest value of all maps, (0, 1]
+    double sh_error = 0.01;                ///< target of auto: RMS / largest value of the lobe's maps, (0, 1]
     bool clamp_negative = true;            ///< sh only: negative texels become 0, their mass is reported
     std::vector<DirectionalLight> lights;  ///< at most 64; both methods add them to the maps with the exact kernel
 };

@@ -56,10 +56,12 @@ Kernels kernels_of(const ZonalKernels& zonal, int lobe, int maps) {
 }
 
 // Bands to project: the error of leaving out all others must be below a quarter of the target for any environment. The
-// largest value of all maps is at least the mean of the diffuse map, which is `diffuse_mean` times the flux.
-int bands_to_project(const Kernels& kernels, double diffuse_mean, double target) {
+// largest value of the lobe's maps is at least the mean of each of them, which is lambda_0 / (4 pi) times the flux.
+int bands_to_project(const Kernels& kernels, double target) {
+    double mean = 0;
+    for (const std::vector<double>& row : kernels.lambda) mean = std::max(mean, row[0] / (4 * pi));
     for (int bands = 1; bands < most_bands; ++bands)
-        if (std::sqrt(kernels.energy_beyond(bands) / (4 * pi)) / diffuse_mean <= target / 4) return bands;
+        if (std::sqrt(kernels.energy_beyond(bands) / (4 * pi)) <= mean * target / 4) return bands;
     return most_bands;
 }
 
@@ -135,22 +137,26 @@ TangentMaps make_maps(const KernelPair& kernels, const Environment& environment,
     return maps;
 }
 
+// Errors of a map are relative to the largest value of the maps of its lobe: a sky's specular maps can be three times
+// darker than its diffuse map.
+struct Largest {
+    double diffuse = 0, specular = 0;
+};
+
 double largest_of(const CubeTexels& texels, double largest) {
     for (const Vec3f& v : texels) largest = std::max({largest, double(v.x), double(v.y), double(v.z)});
     return largest;
 }
 
-double largest_value(const TangentMaps& maps) {
-    double largest = largest_of(maps.diffuse, 0);
-    for (const CubeTexels& texels : maps.specular) largest = largest_of(texels, largest);
-    return largest;
-}
-
-// The largest value of all maps with every projected band, on a grid of its own: it does not depend on face_size.
-double estimate_largest(const KernelPair& kernels, const Environment& environment, const Matrix3& to_world,
-                        const Progress& progress) {
+// The largest values with every projected band, on a grid of its own: they depend neither on face_size nor on the bands
+// that are kept.
+Largest estimate_largest(const KernelPair& kernels, const Environment& environment, const Matrix3& to_world,
+                         const Progress& progress) {
     const Bands all{environment.bands, environment.bands};
-    return largest_value(make_maps(kernels, environment, all, to_world, 16, progress));
+    const TangentMaps maps = make_maps(kernels, environment, all, to_world, 16, progress);
+    Largest largest{largest_of(maps.diffuse, 0), 0};
+    for (const CubeTexels& texels : maps.specular) largest.specular = largest_of(texels, largest.specular);
+    return largest;
 }
 
 // Sum of |negative| * solid angle over texels and channels; sets negative values to 0 where `clamp` says so.
@@ -172,24 +178,27 @@ ShMaps bake_sh_maps(const EnvironmentMap& map, const IrradianceSettings& setting
                     int report_bands, const Progress& progress) {
     const KernelPair kernels{kernels_of(zonal, diffuse_lobe, 1),
                              kernels_of(zonal, specular_lobe, settings.specular_maps)};
-    const double diffuse_mean = kernels.diffuse.lambda[0][0] / (4 * pi);
-    const int projected = std::max({bands_to_project(kernels.diffuse, diffuse_mean, settings.sh_error),
-                                    bands_to_project(kernels.specular, diffuse_mean, settings.sh_error), report_bands,
+    const int projected = std::max({bands_to_project(kernels.diffuse, settings.sh_error),
+                                    bands_to_project(kernels.specular, settings.sh_error), report_bands,
                                     settings.sh_bands_diffuse.value_or(1), settings.sh_bands_specular.value_or(1)});
     const Environment environment(project_sh(map, projected, progress), projected);
     const Matrix3 to_world = map_to_world(map);
 
-    const double allowed = settings.sh_error * estimate_largest(kernels, environment, to_world, progress);
-    const Bands bands{settings.sh_bands_diffuse.value_or(choose_bands(kernels.diffuse, environment, allowed)),
-                      settings.sh_bands_specular.value_or(choose_bands(kernels.specular, environment, allowed))};
+    const Largest largest = estimate_largest(kernels, environment, to_world, progress);
+    const auto choose = [&](const Kernels& lobe, double of) {
+        return choose_bands(lobe, environment, settings.sh_error * of);
+    };
+    const Bands bands{settings.sh_bands_diffuse.value_or(choose(kernels.diffuse, largest.diffuse)),
+                      settings.sh_bands_specular.value_or(choose(kernels.specular, largest.specular))};
     ShMaps baked(make_maps(kernels, environment, bands, to_world, settings.face_size, progress));
     baked.bands_diffuse = bands.diffuse;
     baked.bands_specular = bands.specular;
 
-    const double largest = largest_value(baked.maps);
-    const auto relative = [&](double rms) { return largest > 0 ? rms / largest : 0; };
-    baked.predicted_error_diffuse = relative(truncation_rms(kernels.diffuse, environment, bands.diffuse));
-    baked.predicted_error_specular = relative(truncation_rms(kernels.specular, environment, bands.specular));
+    const auto relative = [](double rms, double of) { return of > 0 ? rms / of : 0; };
+    baked.predicted_error_diffuse =
+        relative(truncation_rms(kernels.diffuse, environment, bands.diffuse), largest.diffuse);
+    baked.predicted_error_specular =
+        relative(truncation_rms(kernels.specular, environment, bands.specular), largest.specular);
 
     const std::vector<double> solid_angles = cube_texel_solid_angles(settings.face_size);
     baked.negative_mass_diffuse = remove_negative(baked.maps.diffuse, solid_angles, settings.clamp_negative);

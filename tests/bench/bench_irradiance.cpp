@@ -80,11 +80,11 @@ IrradianceSettings paper_maps(IrradianceMethod method) {
 
 void print_accuracy(int step) {
     std::printf(
-        "\nAccuracy against the sum over every pixel: RMS over the largest value of all maps, per cent.\n"
+        "\nAccuracy against the sum over every pixel: RMS over the largest value of the lobe's maps, per cent.\n"
         "16x16x6, p = 64, one diffuse and nine specular maps, %s texels.\n",
         step == 1 ? "all" : "some");
-    std::printf("%-24s | %7s | %9s %15s %15s | %15s %9s | %s\n", "map", "exact", "sh auto", "diffuse", "specular",
-                "published 3/8", "spec/own", "interpolation bound at 9, 33 maps");
+    std::printf("%-24s | %7s %8s | %15s %15s | %15s %9s | %s\n", "map", "exact d", "exact s", "sh auto, diffuse",
+                "specular", "published 3/8", "spec/own", "interpolation bound at 9, 33 maps");
     Progress progress;
     for (const NamedMap& named : test_maps()) {
         const TexelSample sample = sample_texels(16, step);
@@ -100,8 +100,8 @@ void print_accuracy(int step) {
         const IrradianceMaps published = bake_irradiance(named.map, settings, {}, progress);
         const MapError e = compare(exact, sample.texels, truth), s = compare(sh, sample.texels, truth),
                        p = compare(published, sample.texels, truth);
-        std::printf("%-24s | %7.4f | %9.3f %2d: %.3f<%.3f %2d: %.3f<%.3f | %6.2f < %5.2f %8.1f | %.1f, %.1f\n",
-                    named.name.c_str(), 100 * e.all, 100 * s.all, sh.sh_bands_diffuse, 100 * s.diffuse,
+        std::printf("%-24s | %7.4f %8.4f | %2d: %.3f<%.3f %2d: %.3f<%.3f | %6.2f < %5.2f %8.1f | %.1f, %.1f\n",
+                    named.name.c_str(), 100 * e.diffuse, 100 * e.specular, sh.sh_bands_diffuse, 100 * s.diffuse,
                     100 * sh.predicted_error_diffuse, sh.sh_bands_specular, 100 * s.specular,
                     100 * sh.predicted_error_specular, 100 * p.specular, 100 * published.predicted_error_specular,
                     100 * p.specular_relative, 100 * exact.interpolation_bound_relative,

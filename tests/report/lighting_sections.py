@@ -42,8 +42,8 @@ def sh_maps(scene, page):
     """Maps from spherical harmonics against exact ones."""
     page.section("Maps from spherical harmonics",
                  "Published: 9 coefficients (3 bands) for the diffuse map and 64 (8 bands) for the specular ones. "
-                 "Measured: RMS over all maps of the difference from the exact maps over the largest value; predicted: "
-                 "what the bake's manifest says beforehand. Both per kind of map.")
+                 "Measured: RMS of the difference from the exact maps over the largest value, both of the diffuse map or of "
+                 "the specular maps; predicted: what the bake's manifest says beforehand.")
     rows, pictures = [], []
     for sky, label in SKIES.items():
         exact, _ = scene.bake(f"exact-{sky}", sky, head=True)
@@ -53,11 +53,12 @@ def sh_maps(scene, page):
                                           irradiance__sh_bands__diffuse=diffuse,
                                           irradiance__sh_bands__specular=specular)
             maps, compared = manifest["irradiance"], scene.hairbake.compare(exact, folder)
-            every = [value for name, value in compared.items() if name == "diffuse" or name.startswith("specular_")]
-            largest = max(value["largest"] for value in every)
-            # Over all maps of the kind together, as the prediction is.
-            rms = lambda kind, values=compared, top=largest: math.sqrt(statistics.fmean(
-                v["rms"] ** 2 for n, v in values.items() if n.startswith(kind))) / top
+
+            def rms(kind, values=compared):
+                """Over all maps of the kind together, as the prediction is."""
+                of_kind = [value for name, value in values.items() if name.startswith(kind)]
+                return math.sqrt(statistics.fmean(v["rms"] ** 2 for v in of_kind)) / max(v["largest"] for v in of_kind)
+
             rows.append([label, f"{maps['sh_bands']['diffuse']} and {maps['sh_bands']['specular']}",
                          percent(maps["predicted_error"]["diffuse"]), percent(rms("diffuse")),
                          percent(maps["predicted_error"]["specular"]), percent(rms("specular_"))])

@@ -119,23 +119,30 @@ std::vector<Vec3d> sum_over_pixels(const EnvironmentMap& map, std::span<const Ve
     return sums;
 }
 
+double largest_of(const CubeTexels& texels) {
+    float largest = 0;
+    for (const Vec3f& v : texels) largest = std::max({largest, v.x, v.y, v.z});
+    return largest;
+}
+
 MapError compare(const IrradianceMaps& maps, std::span<const std::size_t> texels, const std::vector<Vec3d>& truth) {
     const std::size_t stride = 1 + maps.specular.size();
-    double largest = 0, diffuse = 0, specular = 0, specular_truth = 0;
+    double largest_diffuse = largest_of(maps.diffuse), largest_specular = 0, diffuse = 0, specular = 0, specular_truth = 0;
+    for (const CubeTexels& cube : maps.specular) largest_specular = std::max(largest_specular, largest_of(cube));
     for (std::size_t i = 0; i < texels.size(); ++i)
         for (std::size_t k = 0; k < stride; ++k) {
             const Vec3d& expected = truth[i * stride + k];
             const Vec3d difference =
                 Vec3d(k == 0 ? maps.diffuse[texels[i]] : maps.specular[k - 1][texels[i]]) - expected;
+            double& largest = k == 0 ? largest_diffuse : largest_specular;
             largest = std::max({largest, expected.x, expected.y, expected.z});
             (k == 0 ? diffuse : specular) += dot(difference, difference);
             if (k > 0) specular_truth += dot(expected, expected);
         }
     const double count = 3.0 * double(texels.size());
     MapError error;
-    error.diffuse = std::sqrt(diffuse / count) / largest;
-    error.specular = std::sqrt(specular / (count * double(stride - 1))) / largest;
-    error.all = std::sqrt((diffuse + specular) / (count * double(stride))) / largest;
+    error.diffuse = std::sqrt(diffuse / count) / largest_diffuse;
+    error.specular = std::sqrt(specular / (count * double(stride - 1))) / largest_specular;
     error.specular_relative = std::sqrt(specular / specular_truth);
     return error;
 }

@@ -18,9 +18,10 @@ namespace hairbake::testing {
 std::vector<Vec3d> sum_over_pixels(const EnvironmentMap& map, std::span<const Vec3d> tangents, double exponent,
                                    int maps);
 
-/// Root mean square over the tangents' texels, all maps and channels of (baked - truth), divided by the largest truth.
+/// Root mean square over the tangents' texels, a lobe's maps and channels of (baked - truth), divided by the largest
+/// value of the same lobe: of the truth at the tangents, or of the baked maps anywhere.
 struct MapError {
-    double diffuse = 0, specular = 0, all = 0;
+    double diffuse = 0, specular = 0;
     double specular_relative = 0;  ///< specular RMS / the specular maps' own root mean square
 };
 MapError compare(const IrradianceMaps& maps, std::span<const std::size_t> texels, const std::vector<Vec3d>& truth);

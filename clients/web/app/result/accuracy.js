@@ -22,7 +22,7 @@ function transmittance_rows(bar) {
     ];
 }
 
-/** Errors relative to the largest value of all maps; sh_bands and predicted_error exist for the method sh alone. */
+/** Errors relative to the largest value of the maps of the same kind; sh_bands and predicted_error exist for the method sh alone. */
 function irradiance_rows({ interpolation_bound_relative, sh_bands, predicted_error }) {
     const rows = [];
     if (interpolation_bound_relative !== undefined)
