@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 #include "core/base/assert.h"
 #include "core/base/parallel.h"
@@ -44,7 +45,8 @@ void linearize(std::vector<Vec3f>& pixels, const Progress& progress) {
 // Takes over the facts of a file beside its pixels. A warning of several files appears once.
 void take_facts(ImageFile& image, EnvironmentMap& map, const Progress& progress) {
     map.source_format = image.format;
-    map.primaries = image.primaries;
+    map.primaries = {};
+    if (image.chromaticities) map.primaries = {name_of(*image.chromaticities), image.chromaticities};
     if (image.integer) {
         map.low_dynamic_range = true;
         image.warnings.push_back(
@@ -62,18 +64,46 @@ void become_cube(EnvironmentMap& map, int size) {
     map.height = cube_faces * size;
 }
 
-// OpenEXR's own cube layout orients the faces differently.
-void check_openexr_cube(const std::filesystem::path& file, EnvironmentLayout requested, ImageFile& image) {
-    if (!image.openexr_cube) return;
-    if (requested != EnvironmentLayout::vertical_strip)
-        fail(file,
-             "the file says that it is OpenEXR's cube map (envmap attribute), whose faces are oriented in another way; "
-             "allowed are lat-long maps and cubes in the orientation of OpenGL. environment_settings.layout = "
-             "vertical_strip "
-             "takes its faces as such");
-    image.warnings.push_back(
-        "the EXR envmap attribute says cube map, whose faces OpenEXR orients in another way: they were taken in the "
-        "orientation of OpenGL, as vertical_strip asks");
+// OpenEXR's own cube maps (ImfEnvmap.h) are vertical strips whose faces are mirror images of OpenGL's: left to right on
+// the sides, upside down on +Y and -Y. The layout vertical_strip takes them as OpenGL's.
+void turn_openexr_cube(EnvironmentLayout requested, EnvironmentMap& map) {
+    if (requested == EnvironmentLayout::vertical_strip) {
+        map.warnings.push_back(
+            "the EXR envmap attribute says cube map, whose faces OpenEXR orients in another way: they were taken in "
+            "the "
+            "orientation of OpenGL, as vertical_strip asks");
+        return;
+    }
+    const int size = map.width;
+    for (int face = 0; face < cube_faces; ++face) {
+        const bool is_vertical = face / 2 == 1;
+        Vec3f* first = map.pixels.data() + std::size_t(face) * size * size;
+        for (int row = 0; row < size; ++row) {
+            Vec3f* line = first + std::size_t(row) * size;
+            if (!is_vertical)
+                std::reverse(line, line + size);
+            else if (row < size / 2)
+                std::swap_ranges(line, line + size, first + std::size_t(size - 1 - row) * size);
+        }
+    }
+    map.warnings.push_back(
+        "the EXR envmap attribute says cube map: its faces were turned to the orientation of OpenGL, and its samples "
+        "on "
+        "the faces' edges were taken as half a texel inside");
+}
+
+// A photo of 4:3 has the shape of a cross. Outside the faces of a cross there is one colour.
+bool has_picture_outside_faces(const CubeLayout& layout, int size, const std::vector<Vec3f>& pixels) {
+    std::vector<std::uint8_t> used(std::size_t(layout.columns) * layout.rows, 0);
+    for (const FacePlace& place : layout.faces) used[std::size_t(place.row) * layout.columns + place.column] = 1;
+    const std::size_t width = std::size_t(layout.columns) * size;
+    const Vec3f* first = nullptr;
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        if (used[i / width / size * layout.columns + i % width / size]) continue;
+        if (!first) first = &pixels[i];
+        if (std::memcmp(&pixels[i], first, sizeof *first) != 0) return true;  // NaN is a colour here too
+    }
+    return false;
 }
 
 EnvironmentMap read_one_picture(const std::filesystem::path& file, EnvironmentLayout requested, Progress& progress) {
@@ -82,7 +112,6 @@ EnvironmentMap read_one_picture(const std::filesystem::path& file, EnvironmentLa
     const auto check = [&](int width, int height) { return fault_of_size(requested, width, height); };
     ProgressPart reading = progress.part(0, 0.9);
     ImageFile image = read_image_file(file, check, reading);
-    check_openexr_cube(file, requested, image);
     EnvironmentMap map;
     take_facts(image, map, progress);
     map.layout = layout_of_shape(image.width, image.height).value();  // `check` let no other shape pass
@@ -91,10 +120,17 @@ EnvironmentMap read_one_picture(const std::filesystem::path& file, EnvironmentLa
         map.width = image.width;
         map.height = image.height;
         map.pixels = std::move(image.pixels);
+        if (image.envmap == OpenExrEnvironment::latlong) map.latlong = LatLong::openexr;
         return map;
     }
     become_cube(map, image.width / layout->columns);
+    if (requested == EnvironmentLayout::automatic && has_picture_outside_faces(*layout, map.width, image.pixels))
+        map.warnings.push_back("the picture was taken as a " + std::string(name_of(map.layout)) + " for its shape (" +
+                               size_text(image.width, image.height) +
+                               "), but it has a picture outside the faces too: is it a photo?");
     map.pixels = take_cube(*layout, map.width, image.pixels);
+    if (image.envmap == OpenExrEnvironment::cube && map.layout == EnvironmentLayout::vertical_strip)
+        turn_openexr_cube(requested, map);
     return map;
 }
 
@@ -114,10 +150,11 @@ EnvironmentMap read_faces(const EnvironmentFiles& files, EnvironmentLayout reque
         };
         ProgressPart reading = progress.part(0.15 * face, 0.15 * (face + 1));
         ImageFile image = read_image_file(file, check, reading);
-        if (face > 0 && image.primaries != map.primaries)
-            fail(file, "the primaries are " + image.primaries + "; those of " + files.files[0].string() + " are " +
-                           map.primaries);
+        const std::string before = map.primaries.name;
         take_facts(image, map, progress);
+        if (face > 0 && map.primaries.name != before)
+            fail(file, "the primaries are " + map.primaries.name + "; those of " + files.files[0].string() + " are " +
+                           before);
         size = image.width;
         map.pixels.reserve(std::size_t(cube_faces) * size * size);
         map.pixels.insert(map.pixels.end(), image.pixels.begin(), image.pixels.end());

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/vec.h"
+#include "core/environment/color_primaries.h"
 #include "core/environment/environment_settings.h"
 
 namespace hairbake {
@@ -19,6 +20,7 @@ using Matrix3 = std::array<Vec3d, 3>;
 struct RadianceRepairs {
     std::uint64_t negative_pixels = 0, nan_pixels = 0, infinite_pixels = 0;
     double energy_removed = 0;  ///< sum over clamped negative values of |value| * solid angle, all channels
+    double solid_angle = 0;     ///< of the infinite and NaN pixels, steradians
     double energy_total = 0;    ///< sum of value * solid angle after repair, all channels
 };
 
@@ -35,13 +37,13 @@ struct EnvironmentMap {
     EnvironmentShape shape = EnvironmentShape::latlong;
     int width = 0, height = 0;
     std::vector<Vec3f> pixels;
-    LatLong latlong = LatLong::gltf;                                   ///< not used for a cube
+    LatLong latlong = LatLong::gltf;                                   ///< never automatic; not used for a cube
     Matrix3 rotation{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};  ///< rows of the active matrix
 
     std::string source_format;                              ///< "hdr", "openexr", ... as OpenImageIO names it
     EnvironmentLayout layout = EnvironmentLayout::latlong;  ///< that was read; never automatic
-    std::string primaries = "unspecified";  ///< colour space of the input, kept and named, never converted
-    bool low_dynamic_range = false;         ///< 8 or 16 bit integer input, sRGB decoded
+    NamedPrimaries primaries;                               ///< of the pixels, after a conversion
+    bool low_dynamic_range = false;                         ///< 8 or 16 bit integer input, sRGB decoded
     RadianceRepairs repairs;
     std::vector<std::string> warnings;  ///< for the user
 };

@@ -52,8 +52,13 @@ void expose(EnvironmentMap& map, const EnvironmentSettings& settings, const std:
         if (row) refuse_overflow(map, file);
 }
 
-/// Counts of the repaired pixels by kind; empty where all were valid.
-std::string repair_warning(const RadianceRepairs& done) {
+/// Counts of the repaired pixels by kind; empty where all were valid, and where the policy automatic removed less than a
+/// millionth of the light: nearly every sky made by a program has a few negative pixels of rounding.
+std::string repair_warning(const RadianceRepairs& done, InvalidRadiance policy) {
+    constexpr double noticeable = 1e-6;
+    if (policy == InvalidRadiance::automatic && done.nan_pixels + done.infinite_pixels == 0 &&
+        invalid_share(done) <= noticeable)
+        return {};
     std::ostringstream text;
     const auto add = [&](std::uint64_t pixels, const char* radiance, const char* became) {
         if (pixels == 0) return;
@@ -68,20 +73,50 @@ std::string repair_warning(const RadianceRepairs& done) {
     return text.str();
 }
 
+/// The convention of a lat-long map's columns; a cube has none.
+void take_convention(EnvironmentMap& map, LatLong convention) {
+    if (convention == LatLong::automatic) return;
+    map.latlong = convention;
+    if (map.shape == EnvironmentShape::cube && convention != LatLong::gltf)
+        map.warnings.push_back("environment_settings.latlong is " + std::string(name_of(convention)) +
+                               ", but the environment is a cube map: it was not used");
+}
+
+/// Converts to the primaries that were asked for. Colours outside them come out negative; these are invalid radiance.
+void convert_primaries(EnvironmentMap& map, const EnvironmentSettings& settings, const std::string& file,
+                       const Progress& progress) {
+    const std::optional<Chromaticities> target = chromaticities_of(settings.to_primaries);
+    if (!target) return;
+    if (!map.primaries.xy)
+        map.warnings.push_back("the file names no primaries: they were taken as Rec.709 and converted to " +
+                               name_of(*target));
+    const Chromaticities source = map.primaries.xy.value_or(default_chromaticities());
+    map.primaries = {name_of(*target), target};
+    if (source == *target) return;
+    const Matrix3 matrix = rgb_conversion(source, *target);
+    parallel_for(map.pixels.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+        progress.check();
+        for (std::size_t i = begin; i < end; ++i) map.pixels[i] = Vec3f(transform(matrix, Vec3d(map.pixels[i])));
+    });
+    const RadianceRepairs outside =
+        repair_radiance(map, settings.invalid_radiance, file + ", converted to " + map.primaries.name, progress);
+    if (const std::string warning = repair_warning(outside, settings.invalid_radiance); !warning.empty())
+        map.warnings.push_back("colours outside " + map.primaries.name + ": " + warning);
+    map.repairs.energy_total = outside.energy_total;
+}
+
 }  // namespace
 
 EnvironmentMap read_environment(const std::filesystem::path& path, const EnvironmentSettings& settings,
                                 Progress& progress) {
     check_settings(settings);
     EnvironmentMap map = assemble_environment(find_environment_files(path), settings.layout, progress);
-    map.latlong = settings.latlong;
+    take_convention(map, settings.latlong);
     map.rotation = rotation_matrix(settings.rotation_deg);
-    if (map.shape == EnvironmentShape::cube && settings.latlong != LatLong::gltf)
-        map.warnings.push_back("environment_settings.latlong is " + std::string(name_of(settings.latlong)) +
-                               ", but the environment is a cube map: it was not used");
-
     map.repairs = repair_radiance(map, settings.invalid_radiance, path.string(), progress);
-    if (std::string warning = repair_warning(map.repairs); !warning.empty()) map.warnings.push_back(std::move(warning));
+    if (std::string warning = repair_warning(map.repairs, settings.invalid_radiance); !warning.empty())
+        map.warnings.push_back(std::move(warning));
+    convert_primaries(map, settings, path.string(), progress);
     expose(map, settings, path.string(), progress);
     progress.report(1);
     return map;

@@ -8,10 +8,11 @@
 
 namespace hairbake {
 
-/// Reads HDR, EXR, TIFF, PFM or PNG pictures. Integers of 8 and 16 bits are decoded as sRGB, with a warning. Alpha and
-/// further channels are dropped with a warning; one channel is grey.
+/// Reads HDR, EXR, TIFF, PFM or PNG pictures. Integers of 8 and 16 bits are decoded as sRGB, with a warning. The layer
+/// with the colours is taken (image_layers.h); alpha and further channels are dropped with a warning; one channel is
+/// grey.
 ///   path      a file, a folder or a pattern (environment_files.h)
-///   settings  layout, convention, rotation, exposure, tint, and how invalid radiance is treated
+///   settings  layout, convention, rotation, exposure, tint, primaries, and how invalid radiance is treated
 ///   progress  reports 0 to 1
 /// The pixels are a lat-long map, or a cube in one of the layouts of cube_layout.h or as six files. With the layout
 /// automatic, the picture's shape decides; map.layout is the layout that was read. A cube stays a cube. The declared

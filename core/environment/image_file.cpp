@@ -1,21 +1,30 @@
 #include "core/environment/image_file.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
+#include <cstring>
+#include <fstream>
 #include <memory>
 #include <new>
 #include <sstream>
+#include <stdexcept>
+
+#include "core/environment/image_header.h"
+#include "core/environment/image_kinds.h"
+#include "core/environment/image_layers.h"
 
 namespace hairbake {
 namespace {
 
-constexpr int most_channels = 64;
+constexpr int most_channels = 1024, most_parts = 256;
+constexpr std::int64_t most_values_in_a_row = 1 << 20;  // channels times width: a reader decodes many rows at once
 constexpr std::int64_t pixels_per_piece = 1 << 20;
+constexpr int least_coverage = 8;  // a data window covers at least this part of the display window
 constexpr std::uintmax_t most_bytes_of_tiles = std::uintmax_t(512) << 20;  // in one row of them, decoded
 // The most decoded bytes that one byte of a PNG, TIFF or EXR can represent, for any picture. Deflate reaches 1032:1 (a
 // match of 258 bytes in 2 bits). Before deflate, EXR's DWA keeps 2 + 2 bytes of an 8 x 8 block of floats (256 bytes),
@@ -26,49 +35,116 @@ constexpr std::uintmax_t most_bytes_of_tiles = std::uintmax_t(512) << 20;  // in
 // DWAB).
 constexpr std::uintmax_t best_ratio = 64 * 1032;
 
+/// A file that begins with another header than on disk.
+class FileBehindHeader : public OIIO::Filesystem::IOProxy {
+public:
+    FileBehindHeader(const std::string& file, ImageHeader header)
+        : IOProxy(file, Read), header_(std::move(header)), file_(file, Read) {}
+    const ImageHeader& header() const { return header_; }
+
+    const char* proxytype() const override { return "hairbake"; }
+    std::size_t size() const override { return header_.text.size() + file_.size() - header_.data_begin; }
+    std::size_t read(void* buffer, std::size_t bytes) override {
+        const std::size_t count = pread(buffer, bytes, m_pos);
+        m_pos += static_cast<std::int64_t>(count);
+        return count;
+    }
+    std::size_t pread(void* buffer, std::size_t bytes, std::int64_t offset) override {
+        const auto begin = static_cast<std::size_t>(std::max<std::int64_t>(offset, 0));
+        const std::size_t of_header = begin < header_.text.size() ? std::min(bytes, header_.text.size() - begin) : 0;
+        if (of_header > 0) std::memcpy(buffer, header_.text.data() + begin, of_header);
+        if (of_header == bytes) return bytes;
+        const std::size_t place = begin + of_header - header_.text.size() + header_.data_begin;
+        return of_header +
+               file_.pread(static_cast<char*>(buffer) + of_header, bytes - of_header, static_cast<std::int64_t>(place));
+    }
+
+private:
+    ImageHeader header_;
+    OIIO::Filesystem::IOFile file_;
+};
+
 struct Source {
     std::filesystem::path file;
+    std::string format;
+    std::unique_ptr<FileBehindHeader> behind;  // outlives the input
     std::unique_ptr<OIIO::ImageInput> input;
+    int part = 0;
 
+    AxisOrder order() const { return behind ? behind->header().order : AxisOrder{}; }
     [[noreturn]] void fail(const std::string& what) const {
         throw Error(ErrorKind::bad_input, file.string() + ": " + what);
     }
 };
 
-// The format by the file's first bytes. No other decoder of OpenImageIO ever reads a user's file.
-std::string sniff(const Source& source) {
-    std::array<unsigned char, 8> head{};
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(source.file.c_str(), "rb"), std::fclose);
+std::string first_bytes(const Source& source) {
+    std::ifstream stream(source.file, std::ios::binary);
     if (!stream) source.fail("cannot be opened");
-    const std::size_t count = std::fread(head.data(), 1, head.size(), stream.get());
-    const auto starts = [&](std::initializer_list<unsigned char> magic) {
-        return count >= magic.size() && std::equal(magic.begin(), magic.end(), head.begin());
-    };
-    if (starts({'#', '?'})) return "hdr";
-    if (starts({0x76, 0x2f, 0x31, 0x01})) return "openexr";
-    if (starts({'I', 'I', 42, 0}) || starts({'M', 'M', 0, 42})) return "tiff";
-    if (starts({'I', 'I', 43, 0}) || starts({'M', 'M', 0, 43})) return "tiff";
-    if (starts({'P', 'F'}) || starts({'P', 'f'})) return "pnm";
-    if (starts({0x89, 'P', 'N', 'G'})) return "png";
-    source.fail("the file's first bytes are of no known image; allowed are HDR, EXR, TIFF, PFM and PNG");
+    std::string bytes(image_start_bytes, '\0');
+    stream.read(bytes.data(), image_start_bytes);
+    bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(stream.gcount(), 0)));
+    return bytes;
 }
 
-void check_size(const Source& source, const OIIO::ImageSpec& spec, const std::string& format, const SizeCheck& check) {
-    const std::string size = std::to_string(spec.width) + " x " + std::to_string(spec.height);
-    const std::string wrong = check(spec.width, spec.height);
+// The format by the file's first bytes. No other decoder of OpenImageIO ever reads a user's file.
+void recognise(Source& source) {
+    const std::string start = first_bytes(source);
+    const ImageKind kind = kind_of_image(start);
+    if (kind.reader.empty())
+        source.fail("this is " + std::string(kind.refusal) + "; allowed are HDR, EXR, TIFF, PFM and PNG");
+    source.format = kind.reader;
+    std::optional<ImageHeader> header;
+    if (source.format == "hdr") header = read_radiance_header(start, std::filesystem::file_size(source.file));
+    if (source.format == "pnm") header = read_pfm_header(start);
+    if (header) source.behind = std::make_unique<FileBehindHeader>(source.file.string(), *std::move(header));
+}
+
+void open(Source& source, OIIO::ImageSpec& spec) {
+    source.input = OIIO::ImageInput::create(source.format);
+    if (!source.input) throw Error(ErrorKind::internal, "OpenImageIO has no reader for " + source.format);
+    OIIO::ImageSpec config;
+    config.attribute("oiio:UnassociatedAlpha", 1);  // else PNG's and TIFF's colours would be multiplied by it
+    if (source.behind) source.input->set_ioproxy(source.behind.get());
+    if (source.input->open(source.file.string(), spec, config)) return;
+    const std::string reason = source.input->geterror();
+    if (reason.find("Subsampled") != std::string::npos)
+        source.fail(
+            "it stores luminance and chroma (Y, RY, BY), chroma in fewer pixels, which is not read; write it "
+            "again as RGB");
+    source.fail("not a readable image: " + reason);
+}
+
+/// Size of the picture: the display window, or the scan lines in the usual axis order.
+struct PictureSize {
+    int width = 0, height = 0;
+};
+
+PictureSize size_of(const Source& source, const OIIO::ImageSpec& spec) {
+    if (source.order().columns) return {spec.height, spec.width};
+    return {spec.full_width, spec.full_height};
+}
+
+std::string size_text(int width, int height) { return std::to_string(width) + " x " + std::to_string(height); }
+
+void check_size(const Source& source, const OIIO::ImageSpec& spec, const SizeCheck& check) {
+    const PictureSize size = size_of(source, spec);
+    const std::string wrong = check(size.width, size.height);
     if (!wrong.empty()) source.fail(wrong);
-    if (spec.nchannels < 1 || spec.nchannels > most_channels)
-        source.fail("the file has " + std::to_string(spec.nchannels) + " channels; allowed are 1 to 64");
+    if (spec.nchannels < 1 || spec.nchannels > most_channels ||
+        std::int64_t(spec.width) * spec.nchannels > most_values_in_a_row)
+        source.fail("the file has " + std::to_string(spec.nchannels) + " channels; allowed are 1 to " +
+                    std::to_string(most_channels) + ", and " + std::to_string(most_values_in_a_row) +
+                    " values in a row of pixels");
     if (spec.depth > 1 || spec.deep) source.fail("the image is volumetric or deep; allowed is a flat image");
     // A run of HDR's encoding covers at most 127 bytes with 2; PFM is not compressed.
     const std::uintmax_t bytes = std::filesystem::file_size(source.file), pixels = spec.image_pixels();
-    const std::uintmax_t raw = format == "hdr"   ? 4 * pixels
-                               : format == "pnm" ? 4 * spec.nchannels * pixels
-                                                 : spec.image_bytes(true);
-    const std::uintmax_t limit = bytes * (format == "hdr" ? 64 : format == "pnm" ? 1 : best_ratio);
+    const std::uintmax_t raw = source.format == "hdr"   ? 4 * pixels
+                               : source.format == "pnm" ? 4 * spec.nchannels * pixels
+                                                        : spec.image_bytes(true);
+    const std::uintmax_t limit = bytes * (source.format == "hdr" ? 64 : source.format == "pnm" ? 1 : best_ratio);
     if (raw > limit)
-        source.fail("the header declares " + size + " pixels, but the file of " + std::to_string(bytes) +
-                    " bytes cannot hold them");
+        source.fail("the header declares " + size_text(spec.width, spec.height) + " pixels, but the file of " +
+                    std::to_string(bytes) + " bytes cannot hold them");
 }
 
 // Tiles are decoded a row of them at a time, and whole even where they reach beyond the image.
@@ -90,133 +166,157 @@ void check_placement(const Source& source, const OIIO::ImageSpec& spec) {
     if (orientation != 1)
         source.fail("the image's orientation is " + std::to_string(orientation) +
                     "; allowed is 1 (first row on top, first column left)");
-    if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
-        spec.height != spec.full_height)
-        source.fail("the data window (" + std::to_string(spec.width) + " x " + std::to_string(spec.height) + " at " +
-                    std::to_string(spec.x) + ", " + std::to_string(spec.y) +
-                    ") is not the display window; allowed is an image that fills it");
-}
-
-// The channels of red, green and blue.
-std::array<int, 3> choose_channels(const OIIO::ImageSpec& spec, ImageFile& image) {
-    const auto is = [](std::string name, char letter) {
-        name = name.substr(name.rfind('.') == std::string::npos ? 0 : name.rfind('.') + 1);
-        return name.size() == 1 && std::toupper(static_cast<unsigned char>(name[0])) == letter;
+    const auto overlap = [](std::int64_t begin, std::int64_t size, std::int64_t full_begin, std::int64_t full_size) {
+        return std::max<std::int64_t>(0, std::min(begin + size, full_begin + full_size) - std::max(begin, full_begin));
     };
-    std::array<int, 3> chosen{-1, -1, -1};
-    for (int c = spec.nchannels - 1; c >= 0; --c)
-        for (int k = 0; k < 3; ++k)
-            if (is(spec.channelnames[c], "RGB"[k])) chosen[k] = c;
-    const bool named = chosen[0] >= 0 && chosen[1] >= 0 && chosen[2] >= 0;
-    const int used = spec.nchannels < 3 ? 1 : 3;
-    if (!named) chosen = used == 1 ? std::array<int, 3>{0, 0, 0} : std::array<int, 3>{0, 1, 2};
-    if (!named && used == 3) image.warnings.push_back("no channels are named R, G and B: the first three were taken");
-    if (used == 1) image.warnings.push_back("the image has no colour: it was taken as grey");
-    if (spec.nchannels > used)
-        image.warnings.push_back("the image has " + std::to_string(spec.nchannels) +
-                                 " channels: alpha and further ones were dropped");
-    return chosen;
+    const std::int64_t covered = overlap(spec.x, spec.width, spec.full_x, spec.full_width) *
+                                 overlap(spec.y, spec.height, spec.full_y, spec.full_height);
+    const std::int64_t data = std::int64_t(spec.width) * spec.height,
+                       display = std::int64_t(spec.full_width) * spec.full_height;
+    if (covered < display / least_coverage || covered < data / least_coverage || covered == 0)
+        source.fail("the data window (" + size_text(spec.width, spec.height) + " at " + std::to_string(spec.x) + ", " +
+                    std::to_string(spec.y) + ") and the display window (" +
+                    size_text(spec.full_width, spec.full_height) + " at " + std::to_string(spec.full_x) + ", " +
+                    std::to_string(spec.full_y) +
+                    ") share less than an eighth of one of them; allowed is an image that "
+                    "fills its display window, or most of it");
 }
 
-std::string name_primaries(const OIIO::ImageSpec& spec) {
-    std::array<float, 8> xy{};
+// All parts of an EXR file; the first image of other files, whose further ones are pages or smaller copies.
+std::vector<ImagePart> parts_of(const Source& source, ImageFile& image) {
+    std::vector<ImagePart> parts;
+    while (static_cast<int>(parts.size()) < most_parts &&
+           source.input->seek_subimage(static_cast<int>(parts.size()), 0)) {
+        if (source.format != "openexr" && !parts.empty()) {
+            image.warnings.push_back("the file has several images: the first was taken");
+            break;
+        }
+        const OIIO::ImageSpec spec = source.input->spec();
+        parts.push_back({std::string(spec.get_string_attribute("oiio:subimagename")), spec.channelnames});
+    }
+    (void)source.input->geterror();  // the end of the parts is no error
+    return parts;
+}
+
+std::optional<Chromaticities> chromaticities_of(const Source& source, const OIIO::ImageSpec& spec) {
+    if (source.behind) return source.behind->header().primaries;
+    Chromaticities xy{};
     const OIIO::ParamValue* found = spec.find_attribute("chromaticities");
     if (!found || found->type().basesize() * found->type().numelements() * found->type().aggregate != sizeof xy)
-        return "unspecified";
-    std::copy_n(static_cast<const float*>(found->data()), 8, xy.begin());
-    struct Known {
-        const char* name;
-        std::array<float, 8> xy;
-    };
-    constexpr Known known[] = {
-        {"Rec.709", {.64f, .33f, .30f, .60f, .15f, .06f, .3127f, .3290f}},
-        {"Rec.2020", {.708f, .292f, .170f, .797f, .131f, .046f, .3127f, .3290f}},
-        {"Display P3", {.68f, .32f, .265f, .69f, .15f, .06f, .3127f, .3290f}},
-        {"ACES AP0", {.7347f, .2653f, 0.f, 1.f, .0001f, -.077f, .32168f, .33767f}},
-        {"ACEScg AP1", {.713f, .293f, .165f, .83f, .128f, .044f, .32168f, .33767f}},
-    };
-    for (const Known& k : known) {
-        bool same = true;
-        for (int i = 0; i < 8; ++i) same &= std::abs(k.xy[i] - xy[i]) < 2e-3f;
-        if (same) return k.name;
-    }
-    std::ostringstream text;
-    text << "custom: red " << xy[0] << ' ' << xy[1] << ", green " << xy[2] << ' ' << xy[3] << ", blue " << xy[4] << ' '
-         << xy[5] << ", white " << xy[6] << ' ' << xy[7];
-    return text.str();
+        return std::nullopt;
+    std::copy_n(static_cast<const float*>(found->data()), xy.size(), xy.begin());
+    return xy;
 }
 
-void add_notes(const OIIO::ImageSpec& spec, OIIO::ImageInput& input, ImageFile& image) {
-    const float exposure = spec.get_float_attribute("hdr:exposure", 1.0f);
-    if (exposure != 1)
-        image.warnings.push_back("the header says EXPOSURE=" + std::to_string(exposure) +
-                                 ": pixels are taken as they are, not divided by it");
-    if (spec.get_string_attribute("textureformat") == "LatLong Environment")
-        image.warnings.push_back(
-            "the EXR envmap attribute says lat-long: OpenEXR's convention would be latlong = openexr");
-    if (input.seek_subimage(1, 0)) image.warnings.push_back("the file has several images: the first was taken");
-    (void)input.geterror();  // a missing second image is no error
-    if (!input.seek_subimage(0, 0)) throw Error(ErrorKind::bad_input, "the first image cannot be read again");
+void take_facts(const Source& source, const OIIO::ImageSpec& spec, ImageFile& image) {
+    image.format = source.format;
+    image.integer = !spec.format.is_floating_point();
+    const std::string_view texture = spec.get_string_attribute("textureformat");
+    if (source.format == "openexr" && texture == "CubeFace Environment") image.envmap = OpenExrEnvironment::cube;
+    if (source.format == "openexr" && texture == "LatLong Environment") image.envmap = OpenExrEnvironment::latlong;
+    image.chromaticities = chromaticities_of(source, spec);
+    if (image.chromaticities)
+        if (const std::string fault = fault_of(*image.chromaticities); !fault.empty()) {
+            image.warnings.push_back("the file's primaries were not used: " + fault);
+            image.chromaticities.reset();
+        }
+    const bool whole = spec.x == spec.full_x && spec.y == spec.full_y && spec.width == spec.full_width &&
+                       spec.height == spec.full_height;
+    if (!whole)
+        image.warnings.push_back("the data window (" + size_text(spec.width, spec.height) +
+                                 ") is not the display window (" + size_text(spec.full_width, spec.full_height) +
+                                 "): pixels outside the data window are black, those beyond the display window are not "
+                                 "used");
 }
 
-bool read_rows(const Source& source, const OIIO::ImageSpec& spec, int begin, int end, std::vector<float>& rows) {
+// Channels begin .. end of rows of the chosen part, [end_row - begin_row][width][end - begin].
+struct ChannelRange {
+    int begin = 0, end = 0;
+    int count() const { return end - begin; }
+};
+
+bool read_rows(const Source& source, const OIIO::ImageSpec& spec, ChannelRange channels, int begin, int end,
+               std::vector<float>& rows) {
     if (spec.tile_width > 0)
-        return source.input->read_tiles(0, 0, spec.x, spec.x + spec.width, spec.y + begin, spec.y + end, 0, 1, 0,
-                                        spec.nchannels, OIIO::TypeDesc::FLOAT, rows.data());
-    return source.input->read_scanlines(0, 0, spec.y + begin, spec.y + end, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT,
-                                        rows.data());
+        return source.input->read_tiles(source.part, 0, spec.x, spec.x + spec.width, spec.y + begin, spec.y + end, 0, 1,
+                                        channels.begin, channels.end, OIIO::TypeDesc::FLOAT, rows.data());
+    return source.input->read_scanlines(source.part, 0, spec.y + begin, spec.y + end, 0, channels.begin, channels.end,
+                                        OIIO::TypeDesc::FLOAT, rows.data());
+}
+
+// Copies the part of one decoded row that lies in the display window.
+void place_row(const OIIO::ImageSpec& spec, const std::array<int, 3>& channels, int stride, const float* values,
+               Vec3f* row) {
+    const int begin = std::max(spec.x, spec.full_x), end = std::min(spec.x + spec.width, spec.full_x + spec.full_width);
+    for (int x = begin; x < end; ++x) {
+        const float* value = values + static_cast<std::ptrdiff_t>(x - spec.x) * stride;
+        row[x - spec.full_x] = {value[channels[0]], value[channels[1]], value[channels[2]]};
+    }
 }
 
 // Pixels are written piece by piece: a declared size without data reserves addresses, but no memory.
-void read_pixels(const Source& source, const OIIO::ImageSpec& spec, Progress& progress, ImageFile& image) {
-    const std::array<int, 3> channels = choose_channels(spec, image);
+void read_pixels(const Source& source, const OIIO::ImageSpec& spec, std::array<int, 3> channels, Progress& progress,
+                 ImageFile& image) {
+    const auto [lowest, highest] = std::minmax_element(channels.begin(), channels.end());
+    const ChannelRange range{*lowest, *highest + 1};
+    for (int& c : channels) c -= range.begin;
     const int unit = spec.tile_height > 0 ? spec.tile_height : 16;
     const auto wanted = static_cast<int>(pixels_per_piece / spec.width);
     const int step = std::min(spec.height, std::max(wanted / unit, 1) * unit);
-    std::vector<float> rows(std::size_t(step) * spec.width * spec.nchannels);
-    image.pixels.reserve(std::size_t(spec.width) * spec.height);
+    const auto width = static_cast<std::size_t>(spec.full_width), height = static_cast<std::size_t>(spec.full_height);
+    std::vector<float> rows(std::size_t(step) * spec.width * range.count());
+    image.pixels.reserve(width * height);
     for (int begin = 0; begin < spec.height; begin += step) {
         progress.check();
         const int end = std::min(spec.height, begin + step);
         // Some readers (TIFF cut short) report success and leave an error behind.
-        if (!read_rows(source, spec, begin, end, rows) || source.input->has_error())
+        if (!read_rows(source, spec, range, begin, end, rows) || source.input->has_error())
             source.fail("rows " + std::to_string(begin) + " to " + std::to_string(end - 1) +
                         " cannot be decoded: " + source.input->geterror());
-        image.pixels.resize(std::size_t(end) * spec.width);
-        Vec3f* pixel = image.pixels.data() + std::size_t(begin) * spec.width;
-        const float* value = rows.data();
-        for (std::size_t i = 0; i < std::size_t(end - begin) * spec.width; ++i, value += spec.nchannels)
-            pixel[i] = {value[channels[0]], value[channels[1]], value[channels[2]]};
+        for (int row = begin; row < end; ++row) {
+            const std::int64_t y = std::int64_t(spec.y) + row - spec.full_y;
+            if (y < 0 || y >= spec.full_height) continue;
+            image.pixels.resize(static_cast<std::size_t>(y + 1) * width);
+            place_row(spec, channels, range.count(),
+                      rows.data() + static_cast<std::size_t>(row - begin) * spec.width * range.count(),
+                      image.pixels.data() + static_cast<std::size_t>(y) * width);
+        }
         progress.report(double(end) / spec.height);
     }
+    image.pixels.resize(width * height);
 }
 
 }  // namespace
 
 ImageFile read_image_file(const std::filesystem::path& file, const SizeCheck& check, Progress& progress) try {
-    Source source{file, nullptr};
+    Source source{file};
     if (!std::filesystem::is_regular_file(file)) source.fail("there is no such file");
-    const std::string format = sniff(source);
-    source.input = OIIO::ImageInput::create(format);
-    if (!source.input) throw Error(ErrorKind::internal, "OpenImageIO has no reader for " + format);
-    OIIO::ImageSpec spec, config;
-    config.attribute("oiio:UnassociatedAlpha", 1);  // else PNG's and TIFF's colours would be multiplied by it
-    if (!source.input->open(file.string(), spec, config))
-        source.fail("not a readable image: " + source.input->geterror());
-
-    check_size(source, spec, format, check);
+    recognise(source);
+    OIIO::ImageSpec spec;
+    open(source, spec);
+    ImageFile image;
+    const ChosenLayer layer = choose_layer(parts_of(source, image), source.format == "openexr");
+    source.part = layer.part;
+    image.warnings.insert(image.warnings.end(), layer.warnings.begin(), layer.warnings.end());
+    if (!source.input->seek_subimage(layer.part, 0))
+        source.fail("part " + std::to_string(layer.part) + " cannot be read");
+    spec = source.input->spec();
+    check_size(source, spec, check);
     check_tiles(source, spec);
     check_placement(source, spec);
-    ImageFile image;
-    image.width = spec.width;
-    image.height = spec.height;
-    image.format = format;
-    image.integer = !spec.format.is_floating_point();
-    image.openexr_cube = spec.get_string_attribute("textureformat") == "CubeFace Environment";
-    image.primaries = name_primaries(spec);
-    add_notes(spec, *source.input, image);
-    read_pixels(source, spec, progress, image);
+    image.width = size_of(source, spec).width;
+    image.height = size_of(source, spec).height;
+    take_facts(source, spec, image);
+    read_pixels(source, spec, layer.channels, progress, image);
+    if (source.behind) {
+        const ImageHeader& header = source.behind->header();
+        put_in_order(header.order, image.width, image.height, image.pixels);
+        if (std::string warning = take_off_exposure(header, image.pixels); !warning.empty())
+            image.warnings.push_back(std::move(warning));
+    }
     return image;
+} catch (const std::invalid_argument& e) {
+    throw Error(ErrorKind::bad_input, file.string() + ": " + e.what());
 } catch (const std::bad_alloc&) {
     throw Error(ErrorKind::out_of_resources, file.string() + ": not enough memory for the image");
 } catch (const std::filesystem::filesystem_error& e) {

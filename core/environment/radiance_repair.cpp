@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <optional>
 #include <sstream>
 
 #include "core/base/parallel.h"
@@ -14,6 +16,8 @@ struct RowFacts {
     float largest_finite = 0;
     RadianceRepairs repairs;
 };
+
+constexpr double most_invalid = 0.01;  // share that the policy automatic repairs
 
 bool valid(float value) { return value >= 0 && std::isfinite(value); }
 
@@ -42,7 +46,9 @@ RowFacts inspect(const Vec3f* row, int width) {
 void clamp_row(Vec3f* row, const TexelSolidAngles& solid_angles, int y, float largest, RadianceRepairs& repairs) {
     const double* share = solid_angles.texels_of_row(y);
     double removed = 0, total = 0;
-    for (int x = 0; x < solid_angles.width; ++x)
+    double unknown = 0;
+    for (int x = 0; x < solid_angles.width; ++x) {
+        if (!is_finite(row[x])) unknown += share[x];
         for (int channel = 0; channel < 3; ++channel) {
             float& value = row[x][channel];
             if (!valid(value)) {
@@ -51,34 +57,61 @@ void clamp_row(Vec3f* row, const TexelSolidAngles& solid_angles, int y, float la
             }
             total += value * share[x];
         }
+    }
+    repairs.solid_angle += unknown * solid_angles.row[y];
     repairs.energy_removed += removed * solid_angles.row[y];
     repairs.energy_total += total * solid_angles.row[y];
 }
 
-void refuse(const EnvironmentMap& map, std::size_t index, const std::string& where) {
-    const Vec3f pixel = map.pixels[index];
+/// The first invalid pixel: its place in the map, and its values before the repair.
+struct InvalidPixel {
+    std::size_t index = 0;
+    Vec3f values;
+};
+
+std::string describe(const EnvironmentMap& map, const InvalidPixel& pixel) {
+    constexpr const char* names[] = {"red", "green", "blue"};
     int channel = 0;
-    while (valid(pixel[channel])) ++channel;
+    while (valid(pixel.values[channel])) ++channel;
     std::ostringstream text;
-    text << where << ": the "
-         << (channel == 0   ? "red"
-             : channel == 1 ? "green"
-                            : "blue")
-         << " radiance at " << place_of_texel(map, index) << " is " << pixel[channel]
-         << "; allowed is finite and not negative. environment_settings.invalid_radiance = clamp repairs and counts "
-            "such pixels";
-    throw Error(ErrorKind::bad_input, text.str(), "environment_settings.invalid_radiance");
+    text << "the " << names[channel] << " radiance at " << place_of_texel(map, pixel.index) << " is "
+         << pixel.values[channel];
+    return text.str();
+}
+
+[[noreturn]] void refuse(const std::string& text) {
+    throw Error(ErrorKind::bad_input,
+                text + ". environment_settings.invalid_radiance = clamp repairs and counts any number of such pixels",
+                "environment_settings.invalid_radiance");
+}
+
+[[noreturn]] void refuse_share(const EnvironmentMap& map, const RadianceRepairs& repairs, const InvalidPixel& first,
+                               const std::string& where) {
+    std::ostringstream text;
+    const std::uint64_t unknown = repairs.nan_pixels + repairs.infinite_pixels;
+    text << where << ": " << repairs.negative_pixels << " pixels have negative radiance and " << unknown
+         << " infinite or NaN radiance, together " << 100 * invalid_share(repairs)
+         << " % of the light or of the sphere; allowed is up to " << 100 * most_invalid
+         << " %. The first: " << describe(map, first);
+    refuse(text.str());
 }
 
 void add(RadianceRepairs& sum, const RadianceRepairs& row) {
     sum.negative_pixels += row.negative_pixels;
     sum.nan_pixels += row.nan_pixels;
     sum.infinite_pixels += row.infinite_pixels;
+    sum.solid_angle += row.solid_angle;
     sum.energy_removed += row.energy_removed;
     sum.energy_total += row.energy_total;
 }
 
 }  // namespace
+
+double invalid_share(const RadianceRepairs& repairs) {
+    const double of_sphere = repairs.solid_angle / (4 * std::numbers::pi);
+    if (repairs.energy_removed == 0) return of_sphere;
+    return of_sphere + repairs.energy_removed / repairs.energy_total;
+}
 
 RadianceRepairs repair_radiance(EnvironmentMap& map, InvalidRadiance policy, const std::string& where,
                                 const Progress& progress) {
@@ -88,11 +121,15 @@ RadianceRepairs repair_radiance(EnvironmentMap& map, InvalidRadiance policy, con
         for (std::size_t y = begin; y < end; ++y) facts[y] = inspect(map.pixels.data() + y * map.width, map.width);
     });
     float largest = 0;
+    std::optional<InvalidPixel> first;
     for (int y = 0; y < map.height; ++y) {
-        if (facts[y].first_invalid >= 0 && policy == InvalidRadiance::reject)
-            refuse(map, std::size_t(y) * map.width + facts[y].first_invalid, where);
         largest = std::max(largest, facts[y].largest_finite);
+        if (first || facts[y].first_invalid < 0) continue;
+        const std::size_t index = std::size_t(y) * map.width + facts[y].first_invalid;
+        first = InvalidPixel{index, map.pixels[index]};
     }
+    if (first && policy == InvalidRadiance::reject)
+        refuse(where + ": " + describe(map, *first) + "; allowed is finite and not negative");
     const TexelSolidAngles solid_angles = texel_solid_angles(map);
     parallel_for(map.height, 16, [&](std::size_t begin, std::size_t end) {
         progress.check();
@@ -101,6 +138,8 @@ RadianceRepairs repair_radiance(EnvironmentMap& map, InvalidRadiance policy, con
     });
     RadianceRepairs repairs;
     for (const RowFacts& row : facts) add(repairs, row.repairs);
+    if (first && policy == InvalidRadiance::automatic && invalid_share(repairs) > most_invalid)
+        refuse_share(map, repairs, *first, where);
     return repairs;
 }
 

@@ -144,7 +144,7 @@ std::vector<WrittenFile> write_map_ktx2(const MapSet& maps, const std::string& p
 
 std::vector<WrittenFile> write_ktx2(const OutputContext& context, const StagePart& part) {
     if (!part.maps) return {};
-    return write_map_ktx2(*part.maps, context.result.inputs.environment->primaries, context.folder, context.progress);
+    return write_map_ktx2(*part.maps, context.result.inputs.environment->primaries.name, context.folder, context.progress);
 }
 
 }  // namespace hairbake

@@ -49,9 +49,14 @@ Json environment_input(const EnvironmentMap& map) {
     block["format"] = map.source_format;
     block["layout"] = std::string(name_of(map.layout));
     if (map.shape == EnvironmentShape::latlong) block["latlong"] = std::string(name_of(map.latlong));
-    block["primaries"] = map.primaries;
+    block["primaries"] = map.primaries.name;
+    if (map.primaries.xy) block["chromaticities"] = *map.primaries.xy;
     block["low_dynamic_range"] = map.low_dynamic_range;
     block["energy"] = map.repairs.energy_total;
+    block["invalid_pixels"] = {{"negative", map.repairs.negative_pixels},
+                               {"nan", map.repairs.nan_pixels},
+                               {"infinite", map.repairs.infinite_pixels}};
+    block["energy_removed"] = map.repairs.energy_removed;
     return block;
 }
 

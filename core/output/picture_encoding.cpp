@@ -25,11 +25,13 @@ std::vector<std::byte> encode(const char* format, OIIO::ImageSpec spec, const OI
 
 }  // namespace
 
-std::vector<std::byte> encode_exr(const std::vector<Vec3f>& pixels, int width, int height, const Metadata& metadata) {
+std::vector<std::byte> encode_exr(const std::vector<Vec3f>& pixels, int width, int height, const Metadata& metadata,
+                                  const std::optional<Chromaticities>& primaries) {
     OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::FLOAT);
     spec.attribute("compression", "zip");
     spec.attribute("DateTime", "");  // or OpenImageIO writes the time of day
     spec.attribute("oiio:ColorSpace", "Linear");
+    if (primaries) spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), primaries->data());
     return encode("exr", spec, OIIO::TypeDesc::FLOAT, pixels.data(), metadata);
 }
 

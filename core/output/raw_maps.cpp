@@ -74,7 +74,7 @@ std::vector<WrittenFile> write_map_raw(const MapSet& maps, const std::string& pr
 std::vector<WrittenFile> write_raw(const OutputContext& context, const StagePart& part) {
     context.progress.check();
     if (part.maps)
-        return write_map_raw(*part.maps, context.result.inputs.environment->primaries, context.folder,
+        return write_map_raw(*part.maps, context.result.inputs.environment->primaries.name, context.folder,
                              context.progress);
     if (find_array(part.arrays, average_transmittance_kind()))
         return write_strand_raw(*context.result.hair, part.arrays, context.folder);

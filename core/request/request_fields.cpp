@@ -130,6 +130,8 @@ std::vector<Field> environment_fields() {
         moved(choice("environment_settings.invalid_radiance", invalid_radiance_names,
                      AT(environment_settings.invalid_radiance)),
               "irradiance.invalid_radiance"),
+        added(choice("environment_settings.to_primaries", to_primaries_names, AT(environment_settings.to_primaries)),
+              "file"),
     };
 }
 

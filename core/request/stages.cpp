@@ -26,7 +26,7 @@ constexpr Phase irradiance_phases[] = {{"irradiance", 2}};
 constexpr Stage table[] = {
     {"transmittance", 2, transmittance_inputs, transmittance_settings, transmittance_phases,
      [](const BakeRequest& request) { return request.hair.has_value(); }, true, ""},
-    {"irradiance", 2, irradiance_inputs, irradiance_settings, irradiance_phases,
+    {"irradiance", 3, irradiance_inputs, irradiance_settings, irradiance_phases,
      [](const BakeRequest& request) { return request.environment.has_value(); }, true, "irradiance"},
 };
 

@@ -195,7 +195,7 @@ EnvironmentMap generate_sky(Sky sky, int width, std::uint64_t seed) {
     map.height = width / 2;
     map.pixels.resize(std::size_t(map.width) * map.height);
     map.source_format = "generated";
-    map.primaries = "Rec.709";
+    map.primaries = {"Rec.709", default_chromaticities()};
     const Scene scene = make_scene(sky, seed);
     const LatLongRows rows = latlong_rows(map.width, map.height);
     const LatLongColumns columns = latlong_columns(map.width);

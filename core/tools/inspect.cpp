@@ -126,7 +126,8 @@ Json environment_facts(const fs::path& file, Progress& progress) {
         facts["face_size"] = map.width;
     else
         facts.update({{"width", map.width}, {"height", map.height}});
-    facts["primaries"] = map.primaries;
+    if (map.shape == EnvironmentShape::latlong) facts["latlong"] = std::string(name_of(map.latlong));
+    facts["primaries"] = map.primaries.name;
     facts["low_dynamic_range"] = map.low_dynamic_range;
     facts["mean_radiance"] = mean_radiance(map);
     facts["brightest_pixel"] = brightest_pixel(map);

@@ -12,6 +12,7 @@
 #include "core/environment/environment_reader.h"
 #include "tests/support/labelled_cube.h"
 #include "tests/support/labelled_pictures.h"
+#include "tests/support/make_map.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 
@@ -221,15 +222,61 @@ TEST(CubeLayout, ShapesAndLayoutsThatDoNotFitAreRefusedWithWhatIsKnown) {
         EXPECT_NE(odd.find(piece), std::string::npos) << piece << " is not in " << odd;
 }
 
-TEST(CubeLayout, OpenExrsOwnCubeIsRefusedUnlessTheStripIsAskedForByName) {
+// Where OpenEXR puts the light of a direction in its own cube maps: ImfEnvmap.h gives a point (a, b) of [-1, 1]^2 on
+// each face, and the pixel's place from the left and from the top, in units of the face.
+struct OpenExrPlace {
+    int face;
+    double from_left, from_top;
+};
+
+OpenExrPlace openexr_place(const Vec3d& d) {
+    const double x = std::abs(d.x), y = std::abs(d.y), z = std::abs(d.z), largest = std::max({x, y, z});
+    const Vec3d p = (d / largest + Vec3d(1)) / 2.0;  // 0 to 1 in each coordinate
+    if (x == largest) return d.x > 0 ? OpenExrPlace{0, p.z, 1 - p.y} : OpenExrPlace{1, 1 - p.z, 1 - p.y};
+    if (y == largest) return d.y > 0 ? OpenExrPlace{2, p.x, 1 - p.z} : OpenExrPlace{3, p.x, p.z};
+    return d.z > 0 ? OpenExrPlace{4, 1 - p.x, 1 - p.y} : OpenExrPlace{5, p.x, 1 - p.y};
+}
+
+TEST(CubeLayout, OpenExrsOwnCubeIsTurnedUnlessTheStripIsAskedForByName) {
     const TemporaryFolder folder;
-    save(folder / "a.exr", labelled_picture("vertical_strip", size),
-         [](OIIO::ImageSpec& spec) { spec.attribute("textureformat", "CubeFace Environment"); });
-    EXPECT_NE(refusal(folder / "a.exr").find("envmap"), std::string::npos);
-    const EnvironmentMap map = read(folder / "a.exr", "vertical_strip");
-    expect_labelled(map);
-    ASSERT_EQ(map.warnings.size(), 1u);
-    EXPECT_NE(map.warnings[0].find("OpenGL"), std::string::npos);
+    LabelledPicture openexr{size, 6 * size, std::vector<Vec3f>(std::size_t(6) * size * size)};
+    const EnvironmentMap cube = testing::make_cube(size, [](const Vec3d& d) { return Vec3d(labelled_radiance(d)); });
+    for (int row = 0; row < cube.height; ++row)
+        for (int column = 0; column < size; ++column) {
+            const OpenExrPlace place = openexr_place(direction_of(cube, {column + 0.5, row + 0.5}));
+            const int x = int(place.from_left * size), y = int(place.from_top * size);
+            openexr.pixels[(std::size_t(place.face) * size + y) * size + x] =
+                cube.pixels[std::size_t(row) * size + column];
+        }
+    const auto says_cube = [](OIIO::ImageSpec& spec) { spec.attribute("textureformat", "CubeFace Environment"); };
+    save(folder / "a.exr", openexr, says_cube);
+    const EnvironmentMap turned = read(folder / "a.exr");
+    expect_labelled(turned);
+    ASSERT_EQ(turned.warnings.size(), 1u);
+    EXPECT_NE(turned.warnings[0].find("turned to the orientation of OpenGL"), std::string::npos);
+
+    save(folder / "b.exr", labelled_picture("vertical_strip", size), says_cube);
+    const EnvironmentMap as_asked = read(folder / "b.exr", "vertical_strip");
+    expect_labelled(as_asked);
+    ASSERT_EQ(as_asked.warnings.size(), 1u);
+    EXPECT_NE(as_asked.warnings[0].find("as vertical_strip asks"), std::string::npos);
+}
+
+TEST(CubeLayout, APhotoWithTheShapeOfACrossIsWarnedOf) {
+    const TemporaryFolder folder;
+    const auto photo_warnings = [&](const char* name, const char* layout, bool photo) {
+        LabelledPicture picture = labelled_picture(name, size);
+        if (photo) picture.pixels.back() = picture.pixels.back() + Vec3f(0.25f);  // outside the faces of both crosses
+        save(folder / "a.exr", picture);
+        return read(folder / "a.exr", layout).warnings;
+    };
+    for (const char* cross : {"horizontal_cross", "vertical_cross"}) {
+        EXPECT_TRUE(photo_warnings(cross, "auto", false).empty());
+        const auto warnings = photo_warnings(cross, "auto", true);
+        ASSERT_EQ(warnings.size(), 1u);
+        EXPECT_NE(warnings[0].find("is it a photo?"), std::string::npos);
+        EXPECT_TRUE(photo_warnings(cross, cross, true).empty()) << "asked for by name";
+    }
 }
 
 TEST(CubeLayout, InvalidPixelsAreNamedByFaceAndCountedWithTheirSolidAngle) {
@@ -238,12 +285,20 @@ TEST(CubeLayout, InvalidPixelsAreNamedByFaceAndCountedWithTheirSolidAngle) {
     // -Z hangs upside down under -Y: its texel (column 3, row 2) is stored 3 from the right and 2 from the bottom.
     picture.pixels[std::size_t(4 * size - 1 - 2) * picture.width + 2 * size - 1 - 3] = {1, -4, 1};
     save(folder / "a.exr", picture);
-    EXPECT_NE(refusal(folder / "a.exr").find("the green radiance at pixel (3, 2) of face -Z is -4"), std::string::npos);
     EnvironmentSettings settings;
+    settings.invalid_radiance = InvalidRadiance::reject;
+    Progress progress;
+    try {
+        read_environment(folder / "a.exr", settings, progress);
+        ADD_FAILURE() << "taken";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("the green radiance at pixel (3, 2) of face -Z is -4"),
+                  std::string::npos)
+            << error.what();
+    }
     settings.invalid_radiance = InvalidRadiance::clamp;
     settings.exposure_stops = 1;
     settings.tint = {1, 2, 4};
-    Progress progress;
     const EnvironmentMap map = read_environment(folder / "a.exr", settings, progress);
     EXPECT_EQ(map.repairs.negative_pixels, 1u);
     EXPECT_NEAR(map.repairs.energy_removed, 4 * cube_texel_solid_angles(size)[2 * size + 3], 1e-12);

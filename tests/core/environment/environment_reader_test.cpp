@@ -165,9 +165,9 @@ TEST(EnvironmentReader, PrimariesAreNamed) {
           with({.713f, .293f, .165f, .83f, .128f, .044f, .32168f, .33767f}));
     write(folder / "odd.exr", map, OIIO::TypeDesc::HALF, with({.7f, .3f, .2f, .8f, .1f, .1f, .3f, .3f}));
     write(folder / "none.exr", map, OIIO::TypeDesc::HALF);
-    EXPECT_EQ(read(folder / "ap1.exr").primaries, "ACEScg AP1");
-    EXPECT_EQ(read(folder / "odd.exr").primaries.substr(0, 6), "custom");
-    EXPECT_EQ(read(folder / "none.exr").primaries, "unspecified");
+    EXPECT_EQ(read(folder / "ap1.exr").primaries.name, "ACEScg AP1");
+    EXPECT_EQ(read(folder / "odd.exr").primaries.name.substr(0, 6), "custom");
+    EXPECT_EQ(read(folder / "none.exr").primaries.name, "unspecified");
 }
 
 TEST(EnvironmentReader, ExposureTintConventionAndRotationAreTaken) {
@@ -196,10 +196,11 @@ TEST(EnvironmentReader, InvalidRadianceIsRefusedNamingThePixelOrClampedAndCounte
     map.pixels[4 * 16 + 2].x = std::numeric_limits<float>::infinity();
     map.pixels[5 * 16 + 3].x = -std::numeric_limits<float>::infinity();
     write(folder / "bad.exr", map, OIIO::TypeDesc::FLOAT);
-    const std::string message = message_of(folder / "bad.exr");
+    EnvironmentSettings settings;
+    settings.invalid_radiance = InvalidRadiance::reject;
+    const std::string message = message_of(folder / "bad.exr", settings);
     EXPECT_NE(message.find("green radiance at pixel (5, 2) is -4"), std::string::npos) << message;
 
-    EnvironmentSettings settings;
     settings.invalid_radiance = InvalidRadiance::clamp;
     settings.exposure_stops = 1;
     const EnvironmentMap back = read(folder / "bad.exr", settings);

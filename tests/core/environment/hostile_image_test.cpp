@@ -87,8 +87,8 @@ std::string exr_header(std::uint32_t width, std::uint32_t height,
 // The same with 64 channels in tiles.
 std::string tiled_exr_header(std::uint32_t width, std::uint32_t height, std::uint32_t tile_width,
                              std::uint32_t tile_height) {
-    std::vector<std::string> names;
-    for (int c = 0; c < 64; ++c) names.push_back({char('A' + c / 10), char('0' + c % 10)});
+    std::vector<std::string> names{"R", "G", "B"};
+    for (int c = 3; c < 64; ++c) names.push_back({char('A' + c / 10), char('0' + c % 10)});
     const std::string tiles = little(tile_width) + little(tile_height) + '\0';
     return exr_header(width, height, names, exr_attribute("tiles", "tiledesc", tiles), 0x200);
 }
@@ -286,7 +286,7 @@ TEST(HostileImage, WhatIsNoEnvironmentMapIsRefusedWithTheReason) {
     EXPECT_NE(refusal(folder / "empty.exr"), "");
     EXPECT_NE(refusal(folder / "missing.exr").find("no such file"), std::string::npos);
     save(folder / "ascii.ppm", "P3\n2 1\n255\n0 0 0 1 1 1\n");
-    EXPECT_NE(refusal(folder / "ascii.ppm").find("no known image"), std::string::npos);
+    EXPECT_NE(refusal(folder / "ascii.ppm").find("of the PNM family"), std::string::npos);
 
     const auto write = [&](const char* name, int width, int height, const auto& change) {
         OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::FLOAT);
@@ -301,8 +301,6 @@ TEST(HostileImage, WhatIsNoEnvironmentMapIsRefusedWithTheReason) {
     write("square.exr", 16, 16, [](OIIO::ImageSpec&) {});
     EXPECT_NE(refusal(folder / "square.exr").find("16 x 16 pixels, the shape of no layout; known are 2:1 (latlong)"),
               std::string::npos);
-    write("window.exr", 16, 8, [](OIIO::ImageSpec& s) { s.full_width = 32; });
-    EXPECT_NE(refusal(folder / "window.exr").find("display window"), std::string::npos);
     write("turned.tif", 16, 8, [](OIIO::ImageSpec& s) { s.attribute("Orientation", 3); });
     EXPECT_NE(refusal(folder / "turned.tif").find("orientation is 3"), std::string::npos);
 }

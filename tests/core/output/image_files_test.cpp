@@ -32,7 +32,7 @@ bool contains(const std::string& text, const std::string& piece) { return text.f
 TEST(MapExr, OiiotoolFindsTheFacesInAVerticalStripWithTheirMetadata) {
     const TemporaryFolder folder;
     BakeProgress progress;
-    const auto files = write_map_exr(*small_result().parts[1].maps, folder / "", progress);
+    const auto files = write_map_exr(*small_result().parts[1].maps, {}, folder / "", progress);
     EXPECT_EQ(files.size(), 8u);  // (diffuse + three specular) x (strip + lat-long)
     const std::string info = oiiotool_info(folder / "specular_01.exr");
     for (const char* piece : {"4 x   24, 3 channel, float openexr", "hairbake:faceOrder: \"+X -X +Y -Y +Z -Z\"",
@@ -43,10 +43,27 @@ TEST(MapExr, OiiotoolFindsTheFacesInAVerticalStripWithTheirMetadata) {
     EXPECT_TRUE(contains(pixel, "2027") && contains(pixel, "2027.25") && contains(pixel, "1973")) << pixel;
 }
 
+TEST(MapExr, SaysThePrimariesOfItsColours) {
+    const TemporaryFolder folder;
+    BakeProgress progress;
+    const Chromaticities xy{.7f, .3f, .2f, .75f, .15f, .05f, .3127f, .329f};
+    write_map_exr(*small_result().parts[1].maps, {name_of(xy), xy}, folder / "", progress);
+    for (const char* name : {"diffuse.exr", "specular_01_latlong.exr"}) {
+        const std::string info = oiiotool_info(folder / name);
+        EXPECT_TRUE(contains(info, "chromaticities: 0.7, 0.3, 0.2, 0.75, 0.15, 0.05, 0.3127, 0.329")) << info;
+        EXPECT_TRUE(contains(info, "hairbake:primaries: \"custom: red 0.7 0.3")) << info;
+    }
+    std::filesystem::create_directory(folder / "unknown");
+    write_map_exr(*small_result().parts[1].maps, {}, folder / "unknown", progress);
+    const std::string info = oiiotool_info(folder / "unknown" / "diffuse.exr");
+    EXPECT_FALSE(contains(info, "chromaticities")) << info;
+    EXPECT_TRUE(contains(info, "hairbake:primaries: \"unspecified\"")) << info;
+}
+
 TEST(MapExr, HoldsNeitherDateNorPath) {
     const TemporaryFolder folder;
     BakeProgress progress;
-    write_map_exr(*small_result().parts[1].maps, folder / "", progress);
+    write_map_exr(*small_result().parts[1].maps, {}, folder / "", progress);
     for (const char* name : {"diffuse.exr", "diffuse_latlong.exr"}) {
         const auto found =
             run_program("grep -a -c -E '20[0-9][0-9]:[0-9][0-9]|hairbake-test-' " + (folder / name).string());
@@ -60,7 +77,7 @@ TEST(MapExr, NamesHaveAsManyDigitsAsTheLastMapNeeds) {
     MapSet maps = *small_result().parts[1].maps;
     maps.lobes[1].cubes.resize(102, maps.lobes[0].cubes[0]);
     maps.lobes[1].theta_prime_deg.resize(102);
-    write_map_exr(maps, folder / "", progress);
+    write_map_exr(maps, {}, folder / "", progress);
     EXPECT_TRUE(std::filesystem::exists(folder / "specular_001.exr"));
     EXPECT_TRUE(std::filesystem::exists(folder / "specular_101_latlong.exr"));
 }
@@ -83,10 +100,10 @@ TEST(LatLongPicture, LooksAlongTheAxesWhereTheGltfConventionSays) {
 
 TEST(EnvironmentSh, PythonReadsTheCoefficientsToTheLastBit) {
     const TemporaryFolder folder;
-    write_environment_sh(std::get<IrradianceFacts>(small_result().parts[1].facts), folder / "");
+    write_environment_sh(std::get<IrradianceFacts>(small_result().parts[1].facts), {"Rec.2020", {}}, folder / "");
     const auto python = test_support::run_python(
         "import json, sys; m = json.load(open(sys.argv[1]))\n"
-        "assert m['bands'] == 2 and m['coefficients'] == [[1, 2, 3], [.1, .2, .3], [1e-20, 0, -5], [7, 8, 9]]\n"
+        "assert m['bands'] == 2 and m['primaries'] == 'Rec.2020' and m['coefficients'] == [[1, 2, 3], [.1, .2, .3], [1e-20, 0, -5], [7, 8, 9]]\n"
         "print('read')",
         (folder / "environment_sh.json").string());
     EXPECT_EQ(python.output, "read\n");

@@ -33,7 +33,7 @@ TEST(LabelledMaps, StripAndLatLongShowEveryDirectionItsOwnLabel) {
     const TemporaryFolder folder;
     BakeProgress progress;
     const MapSet maps = labelled_maps(64);
-    write_map_exr(maps, folder / "", progress);
+    write_map_exr(maps, {}, folder / "", progress);
     for (const char* name : {"diffuse", "specular_00"}) {
         const EnvironmentMap strip = read_environment(folder / (std::string(name) + ".exr"), {}, progress);
         EXPECT_EQ(strip.layout, EnvironmentLayout::vertical_strip);

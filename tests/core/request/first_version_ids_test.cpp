@@ -13,20 +13,21 @@ struct Pin {
     std::string request, transmittance, irradiance, bake;
 };
 
-/// Printed by a program of that commit with the digests "aa" (hair), "bb" (occluder), "cc" (receiver), "dd"
+/// Keys of transmittance were printed by a program of that commit. Its keys of irradiance differed in nothing but the
+/// algorithm version: 2 then, 3 now (CHANGELOG.md). The inputs have the digests "aa" (hair), "bb" (occluder), "cc" (receiver), "dd"
 /// (environment), as far as the request names these files.
 const Pin pins[] = {
     {R"({"hair": "h", "environment": "e"})", "68b6cba1f5358760b36d47eff3a31a4559abf85e844496909fcd22ad1b4d0c4f",
-     "34bef0bb738f6e4b855e88c1ffea0d795f4ea4a4adfad8cd849111404579572e",
-     "dde704190c01264fcb09eaba5fa31fe59cfac04510b977151394f9c64393d827"},
+     "31f5226c9db69f63b4093cc8ca44e94936fe98e9b68eeea0ec6b2f747e7fe33b",
+     "bc2baf9599f873c1c6fa634dace1b0d4c3db70dfff1ae7f2e498841872cbd3f1"},
     {R"({"hair": "h"})", "68b6cba1f5358760b36d47eff3a31a4559abf85e844496909fcd22ad1b4d0c4f", "",
      "ec18b765c63c308369921d1500dd1e792ba7a0dcde5bac04bc5a91ec371eb025"},
-    {R"({"environment": "e"})", "", "34bef0bb738f6e4b855e88c1ffea0d795f4ea4a4adfad8cd849111404579572e",
-     "be71036d0a103f8bbed3015196a82acea97b5def8b021dddc98c764c5c563440"},
+    {R"({"environment": "e"})", "", "31f5226c9db69f63b4093cc8ca44e94936fe98e9b68eeea0ec6b2f747e7fe33b",
+     "e0dcbe569551178590820564b97a254a3fd0b895cbcb6dd182b1bf2ff77047aa"},
     {R"({"hair": "h", "environment": "e", "occluder": "o", "receiver": "r", "transmittance": {"sh_bands": 4, "bent_cone": true}})",
      "226e107d82f40f61096506f53be13747418b3650eb279928e903599acd61dc6e",
-     "34bef0bb738f6e4b855e88c1ffea0d795f4ea4a4adfad8cd849111404579572e",
-     "6cdec569705bde8fd601cf8f93cf2d69d93091d0973b63c62c63c3bf2b9de736"},
+     "31f5226c9db69f63b4093cc8ca44e94936fe98e9b68eeea0ec6b2f747e7fe33b",
+     "a76f6be015c855ab033fbd5f5e7867de8065bbc21569e6904503071811c0a836"},
     {R"({"hair": "h", "strand": {"width": 0.25, "width_scale": 2.5, "opacity": "from_file"}, "transmittance": {"method": "trace", "directions": 49, "direction_set": "stratified", "seed": 9007199254740991}})",
      "360ffd4a1ad448d5d8309671f66e82edfc3ba0fbef63fed71b8f77b14104c332", "",
      "c89613c519ebd7e0bb171151c2b2f7445181763332b08e36673a4cad8f2afc71"},
@@ -35,30 +36,30 @@ const Pin pins[] = {
      "f1d7849b3ab64fff53460c65b4122275bd137804680a9ff91f5c687460b47444"},
     {R"({"hair": "h", "environment": "e", "transmittance": {"directions": 32, "voxels": 128, "reference_vertices": 64}, "irradiance": {"face_size": 8, "specular_maps": 17}})",
      "e66b6e60ae34251c74d9e086de44ac7210d44ef0fef0d6151a5a916c737e5ff6",
-     "5fd50bdbe61bf84c5097966c7be193eae23617acd1cf67b898e6ff4782d4ef41",
-     "a8966c142e13b98fa076c87714c10fb3f106b67c768bd13130a9785159f9142c"},
+     "b50ed61ad1e514e2c0f436399c3e6a44cffb002d844f991c3686fce9a3ffa5a1",
+     "ab5863bfcaf1a8137adbc8aabbe84c69d54dd3cb324c8c0cbf3c4e43493274de"},
     {R"({"hair": "h", "environment": "e", "transmittance": {"directions": 256, "voxels": 512, "reference_vertices": 1024}, "irradiance": {"face_size": 32, "specular_maps": 65}})",
      "ec303ed5e4260861265e00a22907fb12c04b038e9e8e17a886bdbd8fa05787c2",
-     "2693da22a257abce1019202526a525fd28bc84a5809dfdf445fc3889a244371b",
-     "7bb66736e521be20239cd9a6d854d6e63029d551d7588408317ce37ddd1e01e8"},
+     "345017c71a7bf5ba7b0cee7e60b1aef755315bb0c016c79c613ce85419a85878",
+     "8ce1556f78eb08d2003eebfcfc832fdce40cab4ecef3b219670b0d753f6b7621"},
     {R"({"hair": "h", "environment": "e", "transmittance": {"directions": 100, "direction_set": "random"}, "irradiance": {"face_size": 16, "specular_maps": 9, "exponent": 64, "method": "sh", "sh_bands": {"diffuse": 3, "specular": 8}}})",
      "bacac3144a61f3a5ff0b0327bdadfdfea154a754904013b6abddd4c685f63f44",
-     "070e9313f9c7c777dc4cbcf035e3d4dc56cbe533b5c67969504ffa563177a0d0",
-     "39e354b4e980165552b9b17947e73aaf542fd0f5297eb500ab473c936009fd74"},
+     "5c58864fae34b26d74bcadebae1719cc83409da7d9312a4c8447fe07f56611f1",
+     "03100f337f863351d9e7586cb332f719f859bc4805429f3cbd737b6f76722eec"},
     {R"({"environment": "e", "irradiance": {"model": "kajiya-kay", "exponent": 12.5, "layout": "latlong", "latlong": "openexr", "rotation_deg": [1, 2.5, -3], "exposure_stops": -1.5, "tint": [0.5, 0.25, 0.125], "invalid_radiance": "clamp"}})",
-     "", "3876202e48377b3402cada7a7e94edd2029c108188e2826c61595a974d7797a5",
-     "d6508014592174a6e08f9f332c8654451984d14524e406c74eaa86acab990f89"},
+     "", "f66bf56d66303f65bddbbef9a88296fb5e4a12aa4fcc76330669ded83055a968",
+     "bb0b54b157e36dfea4b584ca5b96599a83cbe7c897b8ffd4f3c2f05cffb01e34"},
     {R"({"environment": "e", "irradiance": {"method": "sh", "sh_error": 0.05, "clamp_negative": false, "lights": [{"direction": [0, 1, 0.5], "irradiance": [3, 3, 2.5]}]}, "outputs": ["ktx2", "dds", "raw", "npy"]})",
-     "", "6591d2712edd7a6f4adfb9bcb612565374ee7b848cf2c4dbbf2a6abe133c7807",
-     "a74a5c2c975c02d5feae5d7569bf11b0fbd74a911143166926a726a8720d005d"},
+     "", "5e9024e7d9be5e6de3ac7e676885274d30e34ea2c1559d12694063d0b5539888",
+     "1c6b3daa4f9db5aced84cbd0d16b200889e2831d2f630a1e9dc2e7b127191488"},
     {R"({"hair": "h", "environment": "e", "transmittance": {"voxel_size": 0.125}, "outputs": ["vdb", "glb", "raw", "hair", "exr", "npy"]})",
      "d8ab036299680a9dae8c98e5a2b67e31a9c2328f350041ee9f2d7bc2511cf7a5",
-     "34bef0bb738f6e4b855e88c1ffea0d795f4ea4a4adfad8cd849111404579572e",
-     "98d70fe43c4290c7ebc523056d65d2bdf2ccade4b3feec9252f9386fb567f36b"},
+     "31f5226c9db69f63b4093cc8ca44e94936fe98e9b68eeea0ec6b2f747e7fe33b",
+     "b44b590aaedc3d33d4c675c2d27c92162fc22457944b935cd7ef9710f57afc01"},
     {R"({"hair": "h", "environment": "e", "irradiance": {"rotation_deg": [0, 90, 0]}, "outputs": []})",
      "68b6cba1f5358760b36d47eff3a31a4559abf85e844496909fcd22ad1b4d0c4f",
-     "8607f08934dceda0389579e0aee4b094b062e823104aa2177f24f420958b9687",
-     "b97a7683853e06182eb0f1ef0fed2bb79f408d9bb2516b35cd029465f77ba131"},
+     "a6c20edc29e7227e71c4e3e73f82f9b66936e8f4a67a6663731f30617777f203",
+     "e8eb7a2ee4dbe099d6e9460129e9d6993395f601736686d0439ab7c045d63f0b"},
 };
 
 /// The keys of the stages by name, and the bake's id under "".
@@ -81,9 +82,16 @@ StageKeys pinned(const Pin& pin) {
     return keys;
 }
 
+/// Several defaults have changed since.
+BakeRequest first_defaults() {
+    BakeRequest request;
+    apply_preset(request, "v1");
+    return request;
+}
+
 TEST(FirstVersionIds, RequestsThatNameTheFirstPlacesKeepTheirIds) {
     for (const Pin& pin : pins) {
-        BakeRequest request;
+        BakeRequest request = first_defaults();
         merge_json(request, pin.request, "pin");
         EXPECT_EQ(keys_of(request), pinned(pin)) << pin.request;
     }
@@ -91,7 +99,7 @@ TEST(FirstVersionIds, RequestsThatNameTheFirstPlacesKeepTheirIds) {
 
 TEST(FirstVersionIds, TheSameRequestsAtTheNewPlacesHaveTheSameIds) {
     for (const Pin& pin : pins) {
-        BakeRequest first, request;
+        BakeRequest first = first_defaults(), request;
         merge_json(first, pin.request, "pin");
         EXPECT_TRUE(merge_json(request, to_json(first), "new").empty()) << "to_json names a deprecated place";
         EXPECT_EQ(keys_of(request), pinned(pin)) << pin.request;
@@ -127,7 +135,8 @@ TEST(FirstVersionIds, ThePresetV1SetsEveryFieldBack) {
                           "reference_vertices": 7},
         "fiber": {"kajiya_kay": {"exponent": 12.5}},
         "environment_settings": {"layout": "latlong", "latlong": "openexr", "rotation_deg": [1, 2, 3],
-                                 "exposure_stops": -1.5, "tint": [0.5, 0.25, 0.125], "invalid_radiance": "clamp"},
+                                 "exposure_stops": -1.5, "tint": [0.5, 0.25, 0.125], "invalid_radiance": "clamp",
+                                 "to_primaries": "aces"},
         "irradiance": {"face_size": 8, "specular_maps": 5, "method": "sh", "sh_bands": {"diffuse": 3, "specular": 8},
                        "sh_error": 0.5, "clamp_negative": false,
                        "lights": [{"direction": [0, 1, 0], "irradiance": [1, 2, 3]}]},

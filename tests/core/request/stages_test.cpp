@@ -64,6 +64,7 @@ TEST(StageKeys, EveryFieldIsInTheKeysOfTheStagesThatReadItAndInNoOther) {
         {"environment_settings.exposure_stops", "2", "irradiance"},
         {"environment_settings.tint", "1,1,2", "irradiance"},
         {"environment_settings.invalid_radiance", "clamp", "irradiance"},
+        {"environment_settings.to_primaries", "acescg", "irradiance"},
         {"irradiance.face_size", "8", "irradiance"},
         {"irradiance.specular_maps", "9", "irradiance"},
         {"irradiance.method", "sh", "irradiance"},
