@@ -130,7 +130,7 @@ std::vector<std::string> warnings_of(const IrradianceMaps& maps, const Irradianc
         warnings.push_back("the predicted error of " + percent(predicted) + " is above irradiance.sh_error (" +
                            percent(settings.sh_error) + ")" +
                            (automatic ? ": 128 bands are the most; use irradiance.method exact" : ""));
-    if (maps.interpolation_bound_relative > 0.1)
+    if (maps.interpolation_bound_relative > 0.2)
         warnings.push_back("interpolating between " + std::to_string(settings.specular_maps) +
                            " specular maps can be wrong by up to " + percent(maps.interpolation_bound_relative) +
                            " of their largest value; raise irradiance.specular_maps");
