@@ -102,6 +102,24 @@ void check_for_stray_point(const HairModel& model, const StrandGeometry& geometr
 
 }  // namespace
 
+OwnSegments own_segments(const StrandGeometry& strands, std::uint32_t v) {
+    HAIRBAKE_ASSERT(v < strands.vertex_count());
+    const float reach = own_arc_widths * strands.widths[v];
+    const auto solid_length = [&](std::uint32_t i) {
+        if (strands.segments[i] != Segment::solid) return 0.0f;
+        return length(strands.positions[i + 1] - strands.positions[i]);
+    };
+    OwnSegments own{v, v};
+    for (float arc = 0; own.first > 0 && strands.segments[own.first - 1] != Segment::none && arc <= reach;)
+        arc += solid_length(--own.first);
+    float arc = solid_length(v);
+    while (strands.segments[own.last] != Segment::none && arc <= reach) {
+        if (strands.segments[own.last + 1] == Segment::none) break;
+        arc += solid_length(++own.last);
+    }
+    return own;
+}
+
 StrandGeometry make_strand_geometry(const HairModel& model, const StrandSettings& settings) {
     StrandGeometry geometry;
     geometry.widths = resolve_widths(model, settings);

@@ -100,7 +100,7 @@ std::vector<float> distance_to_other_strands(const StrandGeometry& strands, std:
                 const Vec3f b = start + whole * (float(step + 1) / float(steps));
                 cells.for_each_query(smaller(a, b), larger(a, b), [&](std::uint32_t k) {
                     const std::uint32_t v = vertices[k];
-                    const AdjacentSegments own = adjacent_segments(strands, v);
+                    const OwnSegments own = own_segments(strands, v);
                     if (!own.contains(segment) && !enters_from_inside(strands, v, own, segment, Vec3f(0)))
                         lower(nearest[k], surface_distance(strands, segment, strands.positions[v]));
                 });

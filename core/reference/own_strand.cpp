@@ -13,12 +13,13 @@ public:
     JointWalk(const StrandGeometry& strands, std::uint32_t v, const Vec3f& l)
         : strands_(strands), origin_(strands.positions[v]), direction_(l) {}
 
-    /// Whether the ray passes `joint` inside the strand, and not before the previous joint.
+    /// Whether the ray passes `joint` inside the strand, and not before the previous joint. A step back of up to a radius
+    /// is no turn: joints much closer than the strand is wide are not in line.
     bool passes(std::uint32_t joint) {
         const Vec3d to_joint = Vec3d(strands_.positions[joint]) - origin_;
         const double t = std::max(0.0, dot(to_joint, direction_));
-        if (t < passed_) return false;
-        passed_ = t;
+        if (t < passed_ - 0.5 * double(strands_.widths[joint])) return false;
+        passed_ = std::max(passed_, t);
         constexpr double rounding = 1.0001;  // of Embree and of this function
         return length(to_joint - t * direction_) <= 0.5 * rounding * double(strands_.widths[joint]);
     }
@@ -31,8 +32,8 @@ private:
 
 }  // namespace
 
-bool enters_from_inside(const StrandGeometry& strands, std::uint32_t v, const AdjacentSegments& own,
-                        std::uint32_t segment, const Vec3f& l) {
+bool enters_from_inside(const StrandGeometry& strands, std::uint32_t v, const OwnSegments& own, std::uint32_t segment,
+                        const Vec3f& l) {
     HAIRBAKE_ASSERT(!own.contains(segment));
     JointWalk walk(strands, v, l);
     if (segment > own.last) {

@@ -11,9 +11,9 @@ namespace hairbake {
 /// joint from `own` to `segment`, one after another, within the strand's radius. (Then it stays inside: a segment with
 /// its two joint spheres is convex.)
 ///
-/// own: adjacent_segments(strands, v); must not contain `segment`
+/// own: own_segments(strands, v); must not contain `segment`
 /// l:   unit direction of the ray, or zero for the vertex alone
-bool enters_from_inside(const StrandGeometry& strands, std::uint32_t v, const AdjacentSegments& own,
-                        std::uint32_t segment, const Vec3f& l);
+bool enters_from_inside(const StrandGeometry& strands, std::uint32_t v, const OwnSegments& own, std::uint32_t segment,
+                        const Vec3f& l);
 
 }  // namespace hairbake

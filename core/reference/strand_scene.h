@@ -12,8 +12,10 @@ struct RTCSceneTy;
 
 namespace hairbake {
 
-/// Solid segments as Embree round linear curves (cones with rounded joints, thickness as diameter), without degenerate
-/// segments. Primitive k of geometry 0 is segment segment_of(k). In Embree the model is scaled by scale(). The occluder
+/// Solid segments as Embree round linear curves (cones with rounded joints), without degenerate segments. Primitive k of
+/// geometry 0 is segment segment_of(k). The curves are a little thicker than the strands, by what Embree's single
+/// precision can lose (embree_radius): a hit counts only when ray_meets_segment() (segment_hit.h) confirms it, which the
+/// filter functions of those who trace the scene must ask. In Embree the model is scaled by scale(). The occluder
 /// is an Embree scene of its own, because its rays start elsewhere (core/mesh/grounding.h). Immutable after
 /// construction; several threads may trace it.
 class StrandScene {
@@ -36,6 +38,8 @@ public:
     /// model of 1e-10 or 1e10 units that would leave the range of floats.
     float scale() const { return scale_; }
     std::uint32_t segment_of(std::uint32_t primitive) const { return segment_of_[primitive]; }
+    /// Whether a ray that meets Embree's curve `primitive` meets the strand. origin, l: as in ray_meets_segment().
+    bool confirms(std::uint32_t primitive, const Vec3d& origin, const Vec3d& l) const;
 
 private:
     void build(Progress& progress);

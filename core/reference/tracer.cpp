@@ -41,7 +41,8 @@ struct PacketContext {
     const StrandScene* scene;
     Vec3f direction;
     std::array<std::uint32_t, kPacket> vertex;  ///< or RayOrigin::no_vertex
-    std::array<AdjacentSegments, kPacket> own;
+    std::array<Vec3d, kPacket> origin;
+    std::array<OwnSegments, kPacket> own;
     std::array<std::vector<std::uint32_t>, kPacket>* hit;  ///< segments met; null: the first hit ends the ray
 };
 
@@ -49,19 +50,21 @@ struct PacketContext {
 bool is_own(const PacketContext& context, unsigned lane, std::uint32_t segment) {
     const std::uint32_t vertex = context.vertex[lane];
     if (vertex == RayOrigin::no_vertex) return false;
-    const AdjacentSegments& own = context.own[lane];
+    const OwnSegments& own = context.own[lane];
     return own.contains(segment) ||
            enters_from_inside(context.scene->strands(), vertex, own, segment, context.direction);
 }
 
-/// Drops hits on a vertex's own strand. Where hits are collected, stores every other hit and lets the ray continue.
+/// Drops hits on the surplus of Embree's curves and on a vertex's own strand. Where hits are collected, stores every other hit and lets the ray continue.
 void filter(const RTCFilterFunctionNArguments* arguments) {
     auto& context = *reinterpret_cast<PacketContext*>(arguments->context);
     for (unsigned i = 0; i < arguments->N; ++i) {
         if (arguments->valid[i] != -1) continue;
         const unsigned lane = RTCRayN_id(arguments->ray, arguments->N, i);
-        const std::uint32_t segment = context.scene->segment_of(RTCHitN_primID(arguments->hit, arguments->N, i));
-        if (is_own(context, lane, segment)) {
+        const std::uint32_t primitive = RTCHitN_primID(arguments->hit, arguments->N, i);
+        const std::uint32_t segment = context.scene->segment_of(primitive);
+        if (is_own(context, lane, segment) ||
+            !context.scene->confirms(primitive, context.origin[lane], Vec3d(context.direction))) {
             arguments->valid[i] = 0;
         } else if (context.hit) {
             (*context.hit)[lane].push_back(segment);
@@ -139,7 +142,8 @@ void trace_packet(const Obstacles& obstacles, std::span<const RayOrigin> origins
     packet.context.hit = obstacles.opaque ? nullptr : &hit;
     for (unsigned i = 0; i < origins.size(); ++i) {
         packet.context.vertex[i] = origins[i].vertex;
-        if (!origins[i].on_surface()) packet.context.own[i] = adjacent_segments(scene.strands(), origins[i].vertex);
+        packet.context.origin[i] = Vec3d(origins[i].position);
+        if (!origins[i].on_surface()) packet.context.own[i] = own_segments(scene.strands(), origins[i].vertex);
     }
     for (std::size_t k = 0; k < directions.size(); ++k) {
         const Vec3f l = packet.context.direction = Vec3f(directions[k]);

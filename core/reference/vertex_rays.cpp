@@ -16,19 +16,23 @@ struct RayContext {
     RTCIntersectContext embree;
     const StrandScene* scene;
     std::uint32_t vertex;
-    AdjacentSegments own;
+    Vec3d origin;
+    OwnSegments own;
     Vec3f direction;
     std::vector<std::uint32_t>* hit;  ///< segments met; null: the first hit ends the ray
 };
 
-/// Drops hits on the vertex's own strand. Where hits are collected, stores every other hit and lets the ray continue.
+/// Drops hits on the surplus of Embree's curves and on the vertex's own strand. Where hits are collected, stores every other hit and lets the ray continue.
 void filter(const RTCFilterFunctionNArguments* arguments) {
     auto& context = *reinterpret_cast<RayContext*>(arguments->context);
-    const std::uint32_t segment = context.scene->segment_of(RTCHitN_primID(arguments->hit, arguments->N, 0));
-    const bool own = context.own.contains(segment) || enters_from_inside(context.scene->strands(), context.vertex,
-                                                                         context.own, segment, context.direction);
-    if (!own && !context.hit) return;
-    if (!own) context.hit->push_back(segment);
+    const std::uint32_t primitive = RTCHitN_primID(arguments->hit, arguments->N, 0);
+    const std::uint32_t segment = context.scene->segment_of(primitive);
+    const bool dropped =
+        context.own.contains(segment) ||
+        enters_from_inside(context.scene->strands(), context.vertex, context.own, segment, context.direction) ||
+        !context.scene->confirms(primitive, context.origin, Vec3d(context.direction));
+    if (!dropped && !context.hit) return;
+    if (!dropped) context.hit->push_back(segment);
     arguments->valid[0] = 0;
 }
 
@@ -77,7 +81,13 @@ float VertexRays::transmittance(std::uint32_t vertex, const Vec3d& direction) co
     const Vec3f l(direction);
     if (scene_.occluder() && !past_occluder(vertex, l)) return 0;
     std::vector<std::uint32_t> hit;
-    RayContext context{{}, &scene_, vertex, adjacent_segments(strands, vertex), l, opaque_ ? nullptr : &hit};
+    RayContext context{{},
+                       &scene_,
+                       vertex,
+                       Vec3d(strands.positions[vertex]),
+                       own_segments(strands, vertex),
+                       l,
+                       opaque_ ? nullptr : &hit};
     rtcInitIntersectContext(&context.embree);
     context.embree.filter = filter;
     RTCRay ray = ray_of(strands.positions[vertex] * scene_.scale(), l);

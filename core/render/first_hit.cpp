@@ -30,12 +30,24 @@ RTCRayHit aim(const Vec3f& origin, const Vec3f& direction) {
 }
 
 /// Whether the ray meets the scene before its end; the ray then ends there.
-bool meets(RTCScene scene, RTCRayHit& ray) {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
+bool meets(RTCScene scene, RTCIntersectContext& context, RTCRayHit& ray) {
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene, &context, &ray);
     return ray.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+}
+
+/// Data of the filter for the ray that is being traced. Embree hands the context back unchanged.
+struct StrandContext {
+    RTCIntersectContext embree;
+    const StrandScene* strands;
+    Vec3d origin, direction;
+};
+
+/// Drops hits on the surplus of Embree's curves.
+void confirm(const RTCFilterFunctionNArguments* arguments) {
+    const auto& context = *reinterpret_cast<const StrandContext*>(arguments->context);
+    const std::uint32_t primitive = RTCHitN_primID(arguments->hit, arguments->N, 0);
+    if (!context.strands->confirms(primitive, context.origin, context.direction)) arguments->valid[0] = 0;
 }
 
 }  // namespace
@@ -88,11 +100,15 @@ Vec3d FirstHits::normal_at(std::uint32_t triangle, double u, double v) const {
 FirstHit FirstHits::find(const Vec3d& origin, const Vec3d& direction) const {
     FirstHit hit;
     RTCRayHit ray = aim(Vec3f(origin * double(strands_.scale())), Vec3f(direction));
-    if (meets(strands_.scene(), ray)) {
+    StrandContext context{{}, &strands_, origin, direction};
+    rtcInitIntersectContext(&context.embree);
+    context.embree.filter = confirm;
+    if (meets(strands_.scene(), context.embree, ray)) {
         hit.kind = FirstHit::Kind::strand;
         hit.strand = {strands_.segment_of(ray.hit.primID), double(ray.hit.u)};
     }
-    if (scene_ && meets(scene_, ray)) {
+    context.embree.filter = nullptr;
+    if (scene_ && meets(scene_, context.embree, ray)) {
         hit.kind = FirstHit::Kind::mesh;
         hit.normal = normal_at(ray.hit.primID, ray.hit.u, ray.hit.v);
         if (hit.normal == Vec3d()) hit.normal = -direction;

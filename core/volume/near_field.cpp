@@ -74,9 +74,12 @@ MeanValues<M> grid_depth(const Neighborhood& near, int voxel, const NearFieldWin
 }
 
 /// The number of sides of vertex v on which its strand continues: 2, at an end 1, at a lone point none.
-float own_sides(const StrandGeometry& strands, std::uint32_t v, const AdjacentSegments& own) {
-    const bool before = own.first < v && strands.segments[own.first] == Segment::solid;
-    const bool after = strands.segments[own.last] == Segment::solid;
+float own_sides(const StrandGeometry& strands, std::uint32_t v, const OwnSegments& own) {
+    const auto has_solid = [&](std::uint32_t begin, std::uint32_t end) {
+        return std::any_of(strands.segments.begin() + begin, strands.segments.begin() + end,
+                           [](Segment segment) { return segment == Segment::solid; });
+    };
+    const bool before = has_solid(own.first, v), after = has_solid(v, own.last + 1);
     return static_cast<float>(before) + static_cast<float>(after);
 }
 
@@ -99,8 +102,8 @@ std::size_t pieces_around(const Neighborhood& near, const Vec3f& x) {
 
 /// F_exact of a vertex at local position x, without the factor 1 / 4 pi.
 template <std::size_t M>
-MeanValues<M> exact_depth(const Neighborhood& near, const Vec3f& x, const AdjacentSegments& own,
-                          const VertexMeans<M>& means, Reaching<M>& pieces) {
+MeanValues<M> exact_depth(const Neighborhood& near, const Vec3f& x, const OwnSegments& own, const VertexMeans<M>& means,
+                          Reaching<M>& pieces) {
     MeanValues<M> depths{};
     pieces.count = 0;
     for_each_row(near, x, [&](std::size_t begin, std::size_t end) {
@@ -117,7 +120,7 @@ HWY_INLINE MeanValues<M> exponents_of(const NearFieldInput& input, std::size_t p
                                       const VertexMeans<M>& means, Reaching<M>& pieces) {
     const StrandGeometry& strands = input.strands;
     const std::uint32_t v = input.volume.sorted.vertices[place];
-    const AdjacentSegments own = adjacent_segments(strands, v);
+    const OwnSegments own = own_segments(strands, v);
     MeanValues<M> exponents, shares;
     exponents.fill(own_sides(strands, v, own) * input.own_unit * strands.opacities[v] * strands.widths[v]);
     float largest_share = 0;

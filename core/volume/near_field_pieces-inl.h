@@ -117,7 +117,7 @@ void add_to(MeanValues<M>& sums, const MeanValues<M>& more) {
 /// integrated and emptied; returns these integrals.
 template <std::size_t M>
 HWY_NOINLINE MeanValues<M> select(const Neighborhood& near, std::size_t begin, std::size_t end, const Vec3f& x,
-                                  const AdjacentSegments& own, const VertexMeans<M>& means, Reaching<M>& out) {
+                                  const OwnSegments& own, const VertexMeans<M>& means, Reaching<M>& out) {
     MeanValues<M> integrals{};
     const F d;
     const hn::RebindToSigned<F> di;

@@ -109,7 +109,7 @@ TEST(StrandGeometry, TheSegmentsAtAVertexReachAcrossDegenerateOnes) {
     const StrandGeometry geometry = make_strand_geometry(model, {});
     const std::vector<std::vector<std::uint32_t>> solid_at{{1}, {1}, {1, 3}, {1, 3}, {3, 4}, {4}, {}, {7}, {7}};
     for (std::uint32_t v = 0; v < solid_at.size(); ++v) {
-        const AdjacentSegments adjacent = adjacent_segments(geometry, v);
+        const OwnSegments adjacent = own_segments(geometry, v);
         std::vector<std::uint32_t> solid;
         for (std::uint32_t i = 0; i < solid_at.size(); ++i)
             if (adjacent.contains(i) && geometry.segments[i] == Segment::solid) solid.push_back(i);

@@ -29,15 +29,16 @@ TEST(DistanceToOtherStrands, IsFromTheSurfaceInWidthsOfTheVertex) {
     for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(distance[k], expected[k], 1e-6) << k;
 }
 
-TEST(DistanceToOtherStrands, IgnoresTheVerticesOwnAdjacentSegmentsAndItsStrandsThickness) {
-    // Segments of one, 0.3 and 0.05 widths: the nearest segment that is not adjacent is 1 - 0.5 away in the first; in
-    // the others everything near is joined to the vertex inside the thickness, up to the first joint beyond w/2: the
-    // segment that begins at 0.6 in the second (0.1 away), at 0.55 in the third (0.05).
-    for (const auto [segment, expected] : {std::array{1.0, 0.5}, {0.3, 0.1}, {0.05, 0.05}}) {
+TEST(DistanceToOtherStrands, IgnoresTheVerticesOwnSegments) {
+    // Own are the segments that begin within 8 widths along the strand (docs/math.md, "The traced reference"). The
+    // next one on this straight strand begins at the first multiple of the segment's length beyond 8, and the surface
+    // of its round end is half a width nearer.
+    for (const auto [segment, expected] : {std::array{1.0, 8.5}, {0.3, 7.6}, {0.07, 7.55}, {30.0, 29.5}}) {
         StrandModel model;
-        model.add(straight({0, 0, 0}, {60 * segment, 0, 0}, 60), 1);
-        EXPECT_NEAR(distance_to_other_strands(model.geometry(), std::vector<std::uint32_t>{30}, 2)[0], expected, 2e-4)
-            << segment;
+        const int half = static_cast<int>(12 / segment) + 3;
+        model.add(straight({0, 0, 0}, {2 * half * segment, 0, 0}, 2 * half), 1);
+        const std::vector<std::uint32_t> middle{static_cast<std::uint32_t>(half)};
+        EXPECT_NEAR(distance_to_other_strands(model.geometry(), middle, 50)[0], expected, 2e-4) << segment;
     }
 }
 
@@ -69,7 +70,7 @@ TEST(DistanceToOtherStrands, AgreesWithLookingAtEverySegment) {
             const Vec3d p(strands.positions[v]);
             double nearest = double(limit) * double(strands.widths[v]);
             for (std::uint32_t i = 0; i < strands.vertex_count(); ++i) {
-                if (strands.segments[i] != Segment::solid || adjacent_segments(strands, v).contains(i)) continue;
+                if (strands.segments[i] != Segment::solid || own_segments(strands, v).contains(i)) continue;
                 const Vec3d a(strands.positions[i]), b(strands.positions[i + 1]);
                 double to_axis = 1e9;  // ternary search: the distance is convex along the segment
                 double low = 0, high = 1;

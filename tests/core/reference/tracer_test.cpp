@@ -44,6 +44,42 @@ TEST(TracedTransmittance, OfALoneStraightStrandIsOneHoweverShortItsSegments) {
             }
 }
 
+TEST(TracedTransmittance, OfAStraightStrandOfManyClosePointsIsOne) {
+    // 20,000 points a fiftieth of the width apart: rounding of their positions is 1e-5 of the width, so that neighbours
+    // are not in line. And five points 1e-5 of a unit apart in the middle of a strand.
+    StrandModel dense;
+    dense.add(straight({0.3, 0.1, -0.2}, {4.3, 0.1, -0.2}, 20000), 0.01);
+    StrandModel near;
+    near.add({{0, 0, 0}, {0, 1, 0}, {0, 1.00001, 0}, {0, 1.00002, 0}, {0, 1.00003, 0}, {0, 1.00004, 0}, {0, 2, 0}},
+             0.01);
+    const auto directions = make_directions(DirectionSet::fibonacci, 256, 0);
+    for (const StrandModel* model : {&dense, &near}) {
+        const StrandGeometry strands = model->geometry();
+        std::vector<std::uint32_t> vertices;
+        for (std::uint32_t v = 0; v<strands.vertex_count(); v += strands.vertex_count()> 100 ? 97 : 1)
+            vertices.push_back(v);
+        for (const float a : trace(strands, vertices, directions)) ASSERT_EQ(a, 1);
+    }
+}
+
+TEST(TracedTransmittance, DistantLoopsOfACurlBlock) {
+    // A helix of radius R = 30 widths and a pitch of 4 widths: a vertex sees the neighbouring turns. Its own turn within
+    // 8 widths does not count; the turn above and the one below, 120 widths and more along the strand, do. In the
+    // cylinder's tangent plane they are bars of the width w at the distances 4 w, 8 w, ... to both sides, which hide
+    // asin(w / 2d) / pi each of the circle across them, 0.08 for the nearest pair alone.
+    StrandModel model;
+    std::vector<Vec3d> points;
+    constexpr int turns = 11, steps = 96;
+    for (int i = 0; i <= turns * steps; ++i) {
+        const double phi = 2 * std::numbers::pi * i / steps;
+        points.emplace_back(30 * std::cos(phi), 30 * std::sin(phi), 4.0 * i / steps);
+    }
+    model.add(points, 1);
+    const auto a = trace(model.geometry(), {turns * steps / 2}, make_directions(DirectionSet::fibonacci, 2048, 0))[0];
+    EXPECT_LT(a, 1 - 0.08);
+    EXPECT_GT(a, 0.5);
+}
+
 TEST(TracedTransmittance, OfADegenerateJointInAStraightStrandIsOne) {
     StrandModel model;
     model.add({{-2, 0, 0}, {-1, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 0, 0}}, 0.2);
