@@ -31,9 +31,9 @@ std::string summary(const BakeResult& result, const std::string& folder) {
             add(text);
         }
         const auto* facts = std::get_if<TransmittanceFacts>(&part.facts);
-        if (facts && facts->error_bar && facts->error_bar->vertices > 0) {
-            std::snprintf(text, sizeof text, " (RMSE %.4f, bias %+.4f)", facts->error_bar->rmse,
-                          facts->error_bar->bias);
+        if (facts && facts->error_bar && facts->error_bar->outside.vertices > 0) {
+            std::snprintf(text, sizeof text, " (RMSE %.4f, bias %+.4f)", facts->error_bar->outside.rmse,
+                          facts->error_bar->outside.bias);
             line += text;
         }
         if (part.maps) {

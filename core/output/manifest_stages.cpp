@@ -30,14 +30,22 @@ Json receiver_means(const std::vector<float>& receiver) {
 }
 
 /// Null without a vertex to measure at: an unknown error is not an error of 0.
+Json error_figures(const ErrorFigures& figures) {
+    const auto measured = [&](const auto& value) { return figures.vertices > 0 ? Json(value) : Json(); };
+    return {{"rmse", measured(figures.rmse)},
+            {"bias", measured(figures.bias)},
+            {"ci95", {{"rmse", measured(figures.rmse_ci95)}, {"bias", measured(figures.bias_ci95)}}},
+            {"noise", measured(figures.noise)},
+            {"vertices", figures.vertices}};
+}
+
+/// The figures of the vertices outside other strands stand on top.
 Json error_bar(const ErrorBar& bar) {
-    const auto measured = [&](const auto& value) { return bar.vertices > 0 ? Json(value) : Json(); };
-    return {{"rmse", measured(bar.rmse)},
-            {"bias", measured(bar.bias)},
-            {"ci95", {{"rmse", measured(bar.rmse_ci95)}, {"bias", measured(bar.bias_ci95)}}},
-            {"vertices", bar.vertices},
-            {"inside_strand", bar.inside_strand},
-            {"directions", bar.directions}};
+    Json block = error_figures(bar.outside);
+    block["clear"] = error_figures(bar.clear);
+    block["inside_strand"] = bar.inside_strand;
+    block["directions"] = bar.directions;
+    return block;
 }
 
 Json describe(const std::monostate&, const StagePart&, const BakeRequest&) { return Json::object(); }

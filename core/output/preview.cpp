@@ -98,7 +98,7 @@ void draw_histogram(Sheet& sheet, const std::vector<float>& average, int left, i
 
 std::string error_text(const TransmittanceFacts& facts) {
     if (!facts.error_bar) return "no error bar (reference_vertices 0)";
-    const ErrorBar& bar = *facts.error_bar;
+    const ErrorFigures& bar = facts.error_bar->outside;
     if (bar.vertices == 0) return "no error bar (no vertex lies outside other strands)";
     return format("against %d traced vertices: RMSE %.4f (%.4f to %.4f), bias %+.4f", int(bar.vertices), bar.rmse,
                   bar.rmse_ci95[0], bar.rmse_ci95[1], bar.bias);

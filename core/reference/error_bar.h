@@ -5,27 +5,59 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "core/base/progress.h"
+#include "core/base/vec.h"
 #include "core/reference/strand_scene.h"
 
 namespace hairbake {
 
-/// Statistics of bake - reference over a random sample of vertices.
-struct ErrorBar {
-    std::uint32_t vertices = 0;       ///< compared
-    std::uint32_t inside_strand = 0;  ///< drawn, not compared: inside another strand the reference is ill-defined
-    int directions = 0;               ///< traced per vertex
-    double rmse = 0;
+/// Statistics of bake - reference over some vertices.
+struct ErrorFigures {
+    std::uint32_t vertices = 0;  ///< compared
+    /// Root mean square error of the reference itself, which comes from its finite number of directions.
+    double noise = 0;
+    double rmse = 0;  ///< noise taken off: sqrt(max(0, mean square - noise^2))
     double bias = 0;
     std::array<double, 2> rmse_ci95{};  ///< 95 % confidence interval of rmse (normal approximation of the mean square)
     std::array<double, 2> bias_ci95{};  ///< 95 % confidence interval of bias
 };
 
-/// Statistics of `baked` - `traced`, which have equal sizes. Leaves inside_strand and directions at 0.
-ErrorBar error_statistics(std::span<const float> baked, std::span<const float> traced);
+/// The error bar of a bake, over a random sample of its vertices. A vertex inside another strand is not compared: the
+/// reference is ill-defined there.
+struct ErrorBar {
+    ErrorFigures outside;             ///< vertices outside other strands
+    ErrorFigures clear;               ///< those of them that are at least one width away from other strands
+    std::uint32_t inside_strand = 0;  ///< drawn, not compared
+    int directions = 0;               ///< traced per vertex
+};
 
-/// Traces some vertices in 1,024 Fibonacci directions and compares the bake with them.
+/// The transmittance of the same vertices, traced with two halves of the directions.
+struct TracedHalves {
+    std::vector<float> first, second;
+
+    /// The mean of the two halves.
+    std::vector<float> mean() const;
+};
+
+/// Statistics of `baked` - mean of `traced`, all of one size. The noise is half of the root mean square difference of
+/// the two halves: their errors are independent and of the same size.
+ErrorFigures error_statistics(std::span<const float> baked, const TracedHalves& traced);
+
+/// Statistics against a reference without noise.
+ErrorFigures error_statistics(std::span<const float> baked, std::span<const float> traced);
+
+/// The directions of the reference: two halves of 2,048 Fibonacci directions each, turned by two fixed rotations, so that
+/// no bake uses a set like them.
+inline constexpr int reference_directions = 4096;
+std::array<std::vector<Vec3d>, 2> make_reference_directions();
+
+/// Traces `vertices` in the reference directions.
+/// Throws Error(cancelled).
+TracedHalves trace_reference(const StrandScene& scene, std::span<const std::uint32_t> vertices, Progress& progress);
+
+/// Traces some vertices in the reference directions and compares the bake with them.
 ///
 /// average: [V], of the bake
 /// count:   vertices to draw; all vertices where the model has no more

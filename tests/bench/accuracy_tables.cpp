@@ -16,17 +16,17 @@ namespace hairbake::bench {
 namespace {
 
 void print_accuracy(const std::string& name, const StrandGeometry& strands, const char* target,
-                    const BenchOptions& options, const TriangleMesh* occluder = nullptr) {
+                    const TriangleMesh* occluder = nullptr) {
     Progress progress;
     const Transmittance baked = bake_transmittance_volume({strands, occluder}, {}, progress);
     const auto vertices = scored_vertices(strands);
     const StrandScene scene(strands, progress, occluder);
-    const auto directions = make_directions(DirectionSet::fibonacci, options.reference_directions(), 0);
-    const auto traced = trace_transmittance(scene, vertices, directions, progress);
-    const ErrorBar bar = error_statistics(at(vertices, baked.average), traced);
+    const TracedHalves halves = trace_reference(scene, vertices, progress);
+    const auto traced = halves.mean();
+    const ErrorFigures bar = error_statistics(at(vertices, baked.average), halves);
     const double mean = std::accumulate(traced.begin(), traced.end(), 0.0) / double(traced.size());
-    std::printf("| %s | %zu | %u | %.3f | %.4f (%.4f to %.4f) | %+.4f | %s |\n", name.c_str(), strands.vertex_count(),
-                bar.vertices, mean, bar.rmse, bar.rmse_ci95[0], bar.rmse_ci95[1], bar.bias, target);
+    std::printf("| %s | %zu | %u | %.3f | %.4f | %.4f (%.4f to %.4f) | %+.4f | %s |\n", name.c_str(), strands.vertex_count(),
+                bar.vertices, mean, bar.noise, bar.rmse, bar.rmse_ci95[0], bar.rmse_ci95[1], bar.bias, target);
     std::fflush(stdout);
 }
 
@@ -35,38 +35,38 @@ void print_accuracy(const std::string& name, const StrandGeometry& strands, cons
 void accuracy_table(const BenchOptions& options) {
     std::printf(
         "\n## Accuracy: 256 voxels, 100 directions, against Embree with %d directions\n\n"
-        "| model | vertices | scored | mean A | RMSE (95 %% interval) | bias | target "
-        "|\n|---|---|---|---|---|---|---|\n",
-        options.reference_directions());
+        "| model | vertices | scored | mean A | noise | RMSE (95 %% interval), noise taken off | bias | target "
+        "|\n|---|---|---|---|---|---|---|---|\n",
+        reference_directions);
     const char* target = "RMSE <= 0.015, abs. bias <= 0.006";
-    print_accuracy("generated curly", groom(GroomStyle::curly, options.vertices()), target, options);
-    print_accuracy("generated straight", groom(GroomStyle::straight, options.vertices()), target, options);
-    print_accuracy("generated wavy", groom(GroomStyle::wavy, options.vertices()), "none", options);
+    print_accuracy("generated curly", groom(GroomStyle::curly, options.vertices()), target);
+    print_accuracy("generated straight", groom(GroomStyle::straight, options.vertices()), target);
+    print_accuracy("generated wavy", groom(GroomStyle::wavy, options.vertices()), "none");
     const auto folder = test_support::shared_data("hair");
     if (!std::filesystem::is_directory(folder)) {
         std::printf("no real models in %s: set HAIRBAKE_SHARED_DATA\n", folder.c_str());
         return;
     }
-    print_accuracy("Sintel", make_strand_geometry(read_hair(folder / "sintel.hair"), {}), "RMSE <= 0.018", options);
-    print_accuracy("fur ball", make_strand_geometry(read_hair(folder / "fur.hair"), {}), "none", options);
+    print_accuracy("Sintel", make_strand_geometry(read_hair(folder / "sintel.hair"), {}), "RMSE <= 0.018");
+    print_accuracy("fur ball", make_strand_geometry(read_hair(folder / "fur.hair"), {}), "none");
 }
 
 void occluder_table(const BenchOptions& options) {
     std::printf(
         "\n## Accuracy with an occluder: 256 voxels, 100 directions, against Embree with %d directions\n\n"
-        "| model | vertices | scored | mean A | RMSE (95 %% interval) | bias | target "
-        "|\n|---|---|---|---|---|---|---|\n",
-        options.reference_directions());
+        "| model | vertices | scored | mean A | noise | RMSE (95 %% interval), noise taken off | bias | target "
+        "|\n|---|---|---|---|---|---|---|---|\n",
+        reference_directions);
     const char* target = "RMSE <= 0.03";
     const TriangleMesh head = make_head_mesh();
     const StrandGeometry curly = groom(GroomStyle::curly, options.vertices());
-    print_accuracy("curly and its head", curly, target, options, &head);
-    print_accuracy("straight and its head", groom(GroomStyle::straight, options.vertices()), target, options, &head);
+    print_accuracy("curly and its head", curly, target, &head);
+    print_accuracy("straight and its head", groom(GroomStyle::straight, options.vertices()), target, &head);
     const auto folder = test_support::shared_data("");
     if (std::filesystem::is_directory(folder / "mesh")) {
         const TriangleMesh mesh = read_mesh(folder / "mesh" / "sintel.obj");
         const StrandGeometry sintel = make_strand_geometry(read_hair(folder / "hair" / "sintel.hair"), {});
-        print_accuracy("Sintel and her head", sintel, target, options, &mesh);
+        print_accuracy("Sintel and her head", sintel, target, &mesh);
     } else {
         std::printf("no real models in %s: set HAIRBAKE_SHARED_DATA\n", folder.c_str());
     }

@@ -46,7 +46,7 @@ void opacity_map_rows(const std::string& name, const StrandGeometry& strands) {
                         : bake_transmittance_volume({strands}, s, progress);
         });
         const double cpu = double(std::clock() - begin) / CLOCKS_PER_SEC;
-        const ErrorBar bar = error_statistics(at(vertices, baked.average), traced);
+        const ErrorFigures bar = error_statistics(at(vertices, baked.average), traced);
         std::printf("| %s | %s | %.4f (%.4f to %.4f) | %+.4f | %.2f | %.2f |\n", name.c_str(), method, bar.rmse,
                     bar.rmse_ci95[0], bar.rmse_ci95[1], bar.bias, wall, cpu);
         std::fflush(stdout);

@@ -4,7 +4,7 @@ import { test } from 'node:test';
 import { phase_text, stage_counts_text, stage_title } from '../../../clients/web/app/bake/stage_text.js';
 import { warnings } from '../../../clients/web/app/input_facts.js';
 import { name_from_file, title_text } from '../../../clients/web/app/name_text.js';
-import { bytes_text, number_text } from '../../../clients/web/app/number_text.js';
+import { bytes_text, count_text, number_text } from '../../../clients/web/app/number_text.js';
 import { accuracy_rows } from '../../../clients/web/app/result/accuracy.js';
 import {
     face_direction,
@@ -154,6 +154,10 @@ test('the accuracy of a result names every error that its manifest states', () =
         ['A against traced strands, RMSE', '0.0123 (95 %: 0.01 to 0.015)'],
         ['Bias', '-0.002 (95 %: -0.003 to -0.001)'],
         ['Measured with', '256 vertices, 1 direction each'],
+    ]);
+    assert.deepEqual(accuracy_rows({ error_bar: { ...bar, noise: 0.0031, vertices: 2, directions: 4096 } }).slice(2), [
+        ['Noise of the reference, taken off', '0.0031'],
+        ['Measured with', `2 vertices, ${count_text(4096, 'direction')} each`],
     ]);
     assert.deepEqual(accuracy_rows({ error_bar: { vertices: 0 } }), [
         ['A against traced strands', 'not measured: every vertex drawn lies inside another strand'],

@@ -64,7 +64,10 @@ TEST(Manifest, HasTheErrorBarTheTimingsAndTheMemoryOnTop) {
     EXPECT_EQ(bar["bias"], -0.001);
     EXPECT_EQ(bar["ci95"]["rmse"], Json({0.008, 0.012}));
     EXPECT_EQ(bar["ci95"]["bias"], Json({-0.002, 0.0}));
+    EXPECT_EQ(bar["noise"], 0.003);
     EXPECT_EQ(bar["vertices"], 4);
+    EXPECT_EQ(bar["clear"]["rmse"], 0.02);
+    EXPECT_EQ(bar["clear"]["vertices"], 2);
     EXPECT_EQ(bar["inside_strand"], 1);
     EXPECT_EQ(manifest["timings_s"], Json({{"transmittance", 0.5}}));
     EXPECT_EQ(manifest["peak_memory_bytes"], 123);
@@ -77,10 +80,12 @@ TEST(Manifest, AnErrorBarWithoutAVertexHasNoErrorRatherThanNone) {
     BakeResult result = test_support::small_result();
     ErrorBar& bar_of_result = test_support::error_bar_of(result) = ErrorBar{};
     bar_of_result.inside_strand = 5;
-    bar_of_result.directions = 1024;
+    bar_of_result.directions = 4096;
     const Json bar = Json::parse(make_manifest(result, files))["error_bar"];
-    EXPECT_EQ(bar, Json::parse(R"({"rmse": null, "bias": null, "ci95": {"rmse": null, "bias": null},
-                                   "vertices": 0, "inside_strand": 5, "directions": 1024})"));
+    EXPECT_EQ(bar, Json::parse(R"({"rmse": null, "bias": null, "ci95": {"rmse": null, "bias": null}, "noise": null,
+                                   "vertices": 0, "inside_strand": 5, "directions": 4096,
+                                   "clear": {"rmse": null, "bias": null, "ci95": {"rmse": null, "bias": null},
+                                             "noise": null, "vertices": 0}})"));
 }
 
 TEST(Manifest, LeavesOutAStageThatDidNotRun) {

@@ -49,13 +49,10 @@ inline BakeResult small_result() {
     transmittance.key = "bb";
     transmittance.arrays = {{&average_transmittance_kind(), 1, {0, 0.25f, 0.5f, 0.75f, 1}}};
     ErrorBar bar;
-    bar.vertices = 4;
+    bar.outside = {4, 0.003, 0.01, -0.001, {0.008, 0.012}, {-0.002, 0}};
+    bar.clear = {2, 0.004, 0.02, 0.005, {0.01, 0.03}, {0, 0.01}};
     bar.inside_strand = 1;
-    bar.directions = 1024;
-    bar.rmse = 0.01;
-    bar.bias = -0.001;
-    bar.rmse_ci95 = {0.008, 0.012};
-    bar.bias_ci95 = {-0.002, 0};
+    bar.directions = 4096;
     transmittance.facts = TransmittanceFacts{100, 0.5, 7, 1, bar, nullptr};
     result.parts.push_back(transmittance);
 

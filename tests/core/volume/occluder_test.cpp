@@ -106,8 +106,8 @@ TEST(Occluder, OfHairOnABallAgreesWithTheTracedTruth) {
     Progress progress;
     const StrandScene scene(strands, progress, &ball);
     const ErrorBar bar = measure_error(scene, baked, 600, 1, progress);
-    EXPECT_LT(bar.rmse, 0.03);
-    EXPECT_LT(std::abs(bar.bias), 0.015);
+    EXPECT_LT(bar.outside.rmse, 0.03);
+    EXPECT_LT(std::abs(bar.outside.bias), 0.015);
     std::vector<std::uint32_t> roots;
     for (std::size_t s = 0; s < strands.strand_count(); s += 10) roots.push_back(strands.strand_begin[s]);
     const auto traced = trace_transmittance(scene, roots, make_directions(DirectionSet::fibonacci, 1024, 0), progress);

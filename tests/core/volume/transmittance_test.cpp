@@ -72,7 +72,7 @@ TEST(Transmittance, IsBitEqualWhenTheModelMovesByWhatFloatsHold) {
 double rmse_of(const StrandGeometry& strands, const std::vector<float>& a) {
     Progress progress;
     const StrandScene scene(strands, progress);
-    return measure_error(scene, a, 400, 1, progress).rmse;
+    return measure_error(scene, a, 400, 1, progress).outside.rmse;
 }
 
 TEST(Transmittance, TurnsWithTheModelWithinItsOwnError) {

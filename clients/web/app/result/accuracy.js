@@ -15,6 +15,7 @@ function transmittance_rows(bar) {
     return [
         ['A against traced strands, RMSE', with_interval(bar.rmse, bar.ci95.rmse)],
         ['Bias', with_interval(bar.bias, bar.ci95.bias)],
+        ...(bar.noise === undefined ? [] : [['Noise of the reference, taken off', number_text(bar.noise, digits)]]),
         [
             'Measured with',
             `${count_text(bar.vertices, 'vertex', 'vertices')}, ${count_text(bar.directions, 'direction')} each`,
