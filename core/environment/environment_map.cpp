@@ -1,4 +1,5 @@
 #include "core/environment/environment_map.h"
+#include "core/base/assert.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,14 +21,9 @@ Matrix3 multiply(const Matrix3& a, const Matrix3& b) {
 // Rows: the polar frame's coordinates that give world X, Y and Z.
 Matrix3 convention_matrix(LatLong convention) {
     const Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
-    switch (convention) {
-        case LatLong::gltf:
-            return {x, z, y};
-        case LatLong::filament:
-            return {y, z, x};
-        case LatLong::openexr:
-            return {-y, z, x};
-    }
+    HAIRBAKE_ASSERT(convention != LatLong::automatic);
+    if (convention == LatLong::filament) return {y, z, x};
+    if (convention == LatLong::openexr) return {-y, z, x};
     return {x, z, y};
 }
 

@@ -289,7 +289,8 @@ void read_pixels(const Source& source, const OIIO::ImageSpec& spec, std::array<i
 }  // namespace
 
 ImageFile read_image_file(const std::filesystem::path& file, const SizeCheck& check, Progress& progress) try {
-    Source source{file};
+    Source source;
+    source.file = file;
     if (!std::filesystem::is_regular_file(file)) source.fail("there is no such file");
     recognise(source);
     OIIO::ImageSpec spec;

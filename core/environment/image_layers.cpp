@@ -76,6 +76,13 @@ std::string full_name(const ImagePart& part, const std::string& prefix, bool sev
     return prefix.empty() ? part.name : part.name + "." + prefix;
 }
 
+Layer new_layer(int part, const std::string& name) {
+    Layer layer;
+    layer.part = part;
+    layer.name = name;
+    return layer;
+}
+
 std::vector<Layer> layers_of(std::span<const ImagePart> parts) {
     std::vector<Layer> layers;
     for (std::size_t p = 0; p < parts.size(); ++p)
@@ -84,7 +91,7 @@ std::vector<Layer> layers_of(std::span<const ImagePart> parts) {
             const auto found = std::find_if(layers.begin(), layers.end(), [&](const Layer& layer) {
                 return layer.part == static_cast<int>(p) && layer.name == name;
             });
-            Layer& layer = found == layers.end() ? layers.emplace_back(Layer{static_cast<int>(p), name}) : *found;
+            Layer& layer = found == layers.end() ? layers.emplace_back(new_layer(static_cast<int>(p), name)) : *found;
             add_channel(layer, static_cast<int>(c), parts[p].channels[c]);
         }
     return layers;

@@ -25,8 +25,9 @@ void print_accuracy(const std::string& name, const StrandGeometry& strands, cons
     const auto traced = halves.mean();
     const ErrorFigures bar = error_statistics(at(vertices, baked.average), halves);
     const double mean = std::accumulate(traced.begin(), traced.end(), 0.0) / double(traced.size());
-    std::printf("| %s | %zu | %u | %.3f | %.4f | %.4f (%.4f to %.4f) | %+.4f | %s |\n", name.c_str(), strands.vertex_count(),
-                bar.vertices, mean, bar.noise, bar.rmse, bar.rmse_ci95[0], bar.rmse_ci95[1], bar.bias, target);
+    std::printf("| %s | %zu | %u | %.3f | %.4f | %.4f (%.4f to %.4f) | %+.4f | %s |\n", name.c_str(),
+                strands.vertex_count(), bar.vertices, mean, bar.noise, bar.rmse, bar.rmse_ci95[0], bar.rmse_ci95[1],
+                bar.bias, target);
     std::fflush(stdout);
 }
 

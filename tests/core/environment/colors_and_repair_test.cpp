@@ -17,10 +17,10 @@ using test_support::TemporaryFolder;
 
 constexpr int width = 16, height = 8;
 
-Change with_primaries(const Chromaticities& xy) {
-    return [xy](OIIO::ImageSpec& s) {
-        s.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), xy.data());
-    };
+ExrHeader with_primaries(const Chromaticities& xy) {
+    ExrHeader header;
+    header.chromaticities = xy;
+    return header;
 }
 
 TEST(Primaries, ColoursAreConvertedOnRequestAlone) {
@@ -74,7 +74,7 @@ TEST(InvalidRadiance, AutoRepairsALittleAndRefusesMoreThanAHundredth) {
     const auto file_with = [&](float value, int pixels) {
         EnvironmentMap map = testing::make_map(64, [](const Vec3d&) { return Vec3d{1, 1, 1}; });
         for (int i = 0; i < pixels; ++i) map.pixels[16 * 64 + i].y = value;
-        write_exr(folder / "a.exr", 64, 32, map.pixels, [](OIIO::ImageSpec&) {});
+        write_exr(folder / "a.exr", 64, 32, map.pixels);
         return folder / "a.exr";
     };
     // A texel at the equator is (pi/32)^2 of 4 pi sr, 7.7e-4 of the sphere, and a channel holds a third of the light.
@@ -101,8 +101,7 @@ TEST(InvalidRadiance, AutoRepairsALittleAndRefusesMoreThanAHundredth) {
     settings.invalid_radiance = InvalidRadiance::clamp;
     EXPECT_EQ(picture_refusal(file_with(nan, 60), settings), "");
     // Nothing but negative light.
-    write_exr(folder / "b.exr", width, height, std::vector<Vec3f>(std::size_t(width) * height, Vec3f(-1)),
-              [](OIIO::ImageSpec&) {});
+    write_exr(folder / "b.exr", width, height, std::vector<Vec3f>(std::size_t(width) * height, Vec3f(-1)));
     EXPECT_NE(picture_refusal(folder / "b.exr"), "");
 }
 

@@ -1,4 +1,5 @@
 // OpenEXR files as people have them.
+#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
 #include "tests/core/environment/picture_files.h"
@@ -24,10 +25,8 @@ TEST(ExrFiles, ADataWindowInsideOrBeyondTheDisplayWindowIsPlaced) {
                 for (int column = 0; column < w; ++column)
                     pixels.push_back({float(x + column + 100), float(y + row + 100), 1});
             // The display window begins at (7, 9): only the offset between the windows counts.
-            write_exr(folder / "a.exr", w, h, pixels, [&, x = x, y = y](OIIO::ImageSpec& s) {
-                s.x = 7 + x, s.y = 9 + y, s.full_x = 7, s.full_y = 9, s.full_width = width, s.full_height = height;
-                if (tiled) s.tile_width = s.tile_height = 16;
-            });
+            ExrHeader header{7 + x, 9 + y, 7, 9, width, height, tiled, {}, {}};
+            write_exr(folder / "a.exr", w, h, pixels, header);
             const EnvironmentMap map = read_picture(folder / "a.exr");
             EXPECT_TRUE(warns(map, "data window"));
             ASSERT_EQ(map.width, width);
@@ -43,26 +42,22 @@ TEST(ExrFiles, ADataWindowInsideOrBeyondTheDisplayWindowIsPlaced) {
 TEST(ExrFiles, WindowsThatHardlyMeetAreRefusedBeforeMemoryIsTaken) {
     const TemporaryFolder folder;
     const std::vector<Vec3f> pixels(std::size_t(width) * height, Vec3f(1));
-    const auto message = [&](const Change& change) {
-        write_exr(folder / "a.exr", width, height, pixels, change);
+    const auto message = [&](const ExrHeader& header) {
+        write_exr(folder / "a.exr", width, height, pixels, header);
         return picture_refusal(folder / "a.exr");
     };
-    EXPECT_NE(message([](auto& s) { s.full_width = 16384, s.full_height = 8192; }).find("less than an eighth"),
-              std::string::npos);
-    EXPECT_NE(message([](auto& s) {
-                  s.x = 100;
-                  s.full_x = 0, s.full_width = 16, s.full_height = 8;
-              }),
-              "");
-    EXPECT_NE(message([](auto& s) { s.full_width = 4, s.full_height = 2; }), "") << "an eighth of the data is used";
+    EXPECT_NE(message({0, 0, 0, 0, 16384, 8192, false, {}, {}}).find("less than an eighth"), std::string::npos);
+    EXPECT_NE(message({100, 0, 0, 0, 16, 8, false, {}, {}}), "");
+    EXPECT_NE(message({0, 0, 0, 0, 4, 2, false, {}, {}}), "") << "a sixteenth of the data is used";
 }
 
 TEST(ExrFiles, LatLongAutoFollowsTheEnvmapAttribute) {
     const TemporaryFolder folder;
     const std::vector<Vec3f> pixels(std::size_t(width) * height, Vec3f(1));
-    write_exr(folder / "says.exr", width, height, pixels,
-              [](OIIO::ImageSpec& s) { s.attribute("textureformat", "LatLong Environment"); });
-    write_exr(folder / "silent.exr", width, height, pixels, [](OIIO::ImageSpec&) {});
+    ExrHeader says;
+    says.texture = "LatLong Environment";
+    write_exr(folder / "says.exr", width, height, pixels, says);
+    write_exr(folder / "silent.exr", width, height, pixels);
     EXPECT_EQ(read_picture(folder / "says.exr").latlong, LatLong::openexr);
     EXPECT_EQ(read_picture(folder / "silent.exr").latlong, LatLong::gltf);
     EnvironmentSettings settings;

@@ -1,11 +1,10 @@
 // Writing and reading picture files in tests.
 #pragma once
 
-#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,17 +38,18 @@ inline bool warns(const EnvironmentMap& map, const std::string& piece) {
     return false;
 }
 
-using Change = std::function<void(OIIO::ImageSpec&)>;
+/// What an EXR file's header says beside the size of its data.
+struct ExrHeader {
+    int x = 0, y = 0;  ///< of the data window
+    int full_x = 0, full_y = 0;
+    std::optional<int> full_width, full_height;  ///< of the display window; without, those of the data
+    bool tiled = false;
+    std::string texture;  ///< "LatLong Environment", "CubeFace Environment"
+    std::optional<Chromaticities> chromaticities;
+};
 
-/// An EXR file of floats whose header `change` has changed.
-inline void write_exr(const std::filesystem::path& file, int w, int h, const std::vector<Vec3f>& pixels,
-                      const Change& change) {
-    OIIO::ImageSpec spec(w, h, 3, OIIO::TypeDesc::FLOAT);
-    change(spec);
-    const auto output = OIIO::ImageOutput::create(file.string());
-    ASSERT_TRUE(output && output->open(file.string(), spec)) << OIIO::geterror();
-    ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, pixels.data())) << output->geterror();
-    ASSERT_TRUE(output->close());
-}
+/// An EXR file of floats, w x h pixels of data.
+void write_exr(const std::filesystem::path& file, int w, int h, const std::vector<Vec3f>& pixels,
+               const ExrHeader& header = {});
 
 }  // namespace hairbake::picture_files

@@ -42,7 +42,7 @@ TEST(ErrorStatistics, OfConstantErrorsHaveNoWidth) {
 }
 
 TEST(ErrorStatistics, OfNothingIsZero) {
-    const ErrorFigures bar = error_statistics({}, {});
+    const ErrorFigures bar = error_statistics({}, TracedHalves{});
     EXPECT_EQ(bar.vertices, 0u);
     EXPECT_EQ(bar.rmse, 0);
     EXPECT_EQ(bar.bias_ci95, (std::array{0.0, 0.0}));
