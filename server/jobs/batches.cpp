@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <unordered_set>
 
 #include "core/request/stages.h"
@@ -21,7 +22,7 @@ namespace hairbake {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr std::size_t most_bakes = 100'000, most_listed = 50'000, most_shown = 100;
+constexpr std::size_t most_bakes = 100'000, most_listed = 50'000, most_shown = 100, planned_in_one_read = 50;
 const std::string up_to_most = " LIMIT " + std::to_string(most_bakes + 1);
 
 [[noreturn]] void refuse(const std::string& field, const std::string& message) {
@@ -142,9 +143,13 @@ class Replanning {
 public:
     explicit Replanning(const Json& body) : body_(body), changes_(changes_in(body)) {}
 
-    void each(Sql& sql, const std::function<void(const BakePlan&)>& take) {
-        for (const std::int64_t seq : affected(sql, body_))
-            take(plan_again(sql, sql.rows("SELECT request, names FROM bakes WHERE seq = ?", {seq}).at(0)));
+    std::vector<std::int64_t> bakes(Sql& sql) const { return affected(sql, body_); }
+
+    /// A bake that was removed since bakes() is passed over.
+    void plan(Sql& sql, std::span<const std::int64_t> bakes, const std::function<void(const BakePlan&)>& take) {
+        for (const std::int64_t seq : bakes)
+            for (const SqlRow& row : sql.rows("SELECT request, names FROM bakes WHERE seq = ?", {seq}))
+                take(plan_again(sql, row));
     }
     const std::vector<std::string>& warnings() const { return warnings_; }
 
@@ -168,17 +173,17 @@ private:
 /// How many bakes and stages are stored, and how many stages must run.
 class Forecast {
 public:
-    explicit Forecast(Sql& sql) : sql_(sql) {
+    Forecast() {
         for (const Stage& stage : stages()) reused_[std::string(stage.name)] = 0;
         computed_ = reused_;
     }
 
-    void add(const BakePlan& plan) {
+    void add(Sql& sql, const BakePlan& plan) {
         if (!bakes_.insert(plan.id.substr(0, known_digits)).second) return;
-        done_ += !sql_.rows("SELECT 1 FROM bakes WHERE id = ? AND state = 'done'", {plan.id}).empty();
+        done_ += !sql.rows("SELECT 1 FROM bakes WHERE id = ? AND state = 'done'", {plan.id}).empty();
         for (const StagePlan& stage : plan.stages)
             if (stages_.insert(stage.key.substr(0, known_digits)).second)
-                ++(is_stored(sql_, stage) ? reused_ : computed_)[stage.kind];
+                ++(is_stored(sql, stage) ? reused_ : computed_)[stage.kind];
     }
 
     std::string text() const {
@@ -190,29 +195,34 @@ public:
 private:
     static constexpr std::size_t known_digits = 15;  // 60 bits of a digest: fits into a string without an allocation
 
-    Sql& sql_;
     std::unordered_set<std::string> bakes_, stages_;  ///< beginnings of their ids
     std::int64_t done_ = 0;
     std::map<std::string, std::int64_t> reused_, computed_;
 };
+
+/// Others read and write meanwhile: a forecast of 100,000 bakes takes many seconds.
+std::string forecast(Database& database, Replanning& replanning) {
+    std::vector<std::int64_t> bakes;
+    database.read([&](Sql& sql) { bakes = replanning.bakes(sql); });
+    Forecast forecast;
+    for (std::span<const std::int64_t> rest = bakes; !rest.empty();) {
+        const auto now = rest.first(std::min(rest.size(), planned_in_one_read));
+        database.read(
+            [&](Sql& sql) { replanning.plan(sql, now, [&](const BakePlan& plan) { forecast.add(sql, plan); }); });
+        rest = rest.subspan(now.size());
+    }
+    return forecast.text();
+}
 
 }  // namespace
 
 Batches::Rebaked Batches::rebake(const std::string& text, bool dry_run) {
     const Json body = parse_body(text);
     Replanning replanning(body);
-    const auto held = database_.lock();  // a stage that is stored now is still stored when its bake is queued
-    if (dry_run) {
-        std::string answer;
-        database_.read([&](Sql& sql) {
-            Forecast forecast(sql);
-            replanning.each(sql, [&](const BakePlan& plan) { forecast.add(plan); });
-            answer = forecast.text();
-        });
-        return {{}, answer, replanning.warnings()};
-    }
+    if (dry_run) return {{}, forecast(database_, replanning), replanning.warnings()};
     const std::string id = random_name();
-    queue_.submit_batch(id, shown_request(body), [&](Sql& sql, const auto& take) { replanning.each(sql, take); });
+    queue_.submit_batch(id, shown_request(body),
+                        [&](Sql& sql, const auto& take) { replanning.plan(sql, replanning.bakes(sql), take); });
     return {id, get(id), replanning.warnings()};
 }
 
