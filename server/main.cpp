@@ -1,4 +1,5 @@
 // hairbaked: the service. serve() starts its parts in order.
+#include <malloc.h>
 #include <signal.h>
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_sinks.h>
@@ -20,7 +21,9 @@
 #include "core/base/digest.h"
 #include "core/base/error.h"
 #include "server/http/access.h"
+#include "server/http/body_places.h"
 #include "server/http/http_server.h"
+#include "server/http/json_bodies.h"
 #include "server/http/metrics.h"
 #include "server/http/router.h"
 #include "server/http/routes.h"
@@ -84,9 +87,10 @@ int print_routes() {
     settings.store = folder;
     complete(settings);
     Service service(settings);
+    JsonBodies bodies(settings.store);
     Access access({});
     Metrics metrics;
-    for (const Route& route : all_routes(service, access, metrics)) {
+    for (const Route& route : all_routes(service, bodies, access, metrics)) {
         std::string types;
         for (const std::string& type : route.types) types += " " + type;
         std::printf("%s %s %s %llu%s\n", route.method.c_str(), route.pattern.c_str(), name_of(route.scope).c_str(),
@@ -148,6 +152,13 @@ HttpReply answer(const Router& router, Metrics& metrics, HttpRequest& request) {
     return reply;
 }
 
+/// Gives the memory of a large body back to the system when it is freed. By itself the allocator raises these bounds with
+/// the largest block that was freed, and then each thread's arena keeps as much.
+void give_back_freed_memory() {
+    ::mallopt(M_MMAP_THRESHOLD, 128 << 10);
+    ::mallopt(M_TRIM_THRESHOLD, 128 << 10);
+}
+
 /// Each connection takes a descriptor, and the usual soft limit is lower than the number of connections that may wait.
 void allow_many_files() {
     rlimit limit{};
@@ -159,11 +170,14 @@ void allow_many_files() {
 int serve(const Settings& settings) {
     ::umask(027);
     allow_many_files();
+    give_back_freed_memory();
     prepare_signals();
     Service service(settings);
     Access access(settings.tokens);
     Metrics metrics;
-    const Router router(all_routes(service, access, metrics), access);
+    JsonBodies bodies(service.incoming_folder());
+    BodyPlaces places(settings.bodies, settings.bodies_per_address);
+    const Router router(all_routes(service, bodies, access, metrics), access, places);
     HttpServer http_server(
         {settings.socket, settings.address, settings.port, settings.threads, settings.waiting, settings.accel},
         [&](HttpRequest& request) { return answer(router, metrics, request); });

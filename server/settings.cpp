@@ -116,6 +116,8 @@ void read_listen(Block& block, Settings& settings, const fs::path& base) {
     block.text("address", settings.address);
     block.number("port", settings.port, 0, 65535);
     block.number("threads", settings.threads, 1, 1024);
+    block.number("bodies", settings.bodies, 1, 1024);
+    block.number("bodies_per_address", settings.bodies_per_address, 1, 1024);
     block.number("waiting", settings.waiting, 1, 65536);
     block.text("accel", settings.accel);
 }

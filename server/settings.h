@@ -25,7 +25,9 @@ struct Settings {
     std::string socket;                 ///< Unix socket; when empty, address and port hold
     std::string address = "127.0.0.1";  ///< loopback only; nginx exposes the service
     int port = 8080;                    ///< 0: any free one
-    int threads = 64;                   ///< requests at once; nginx forwards up to 48 uploads
+    int threads = 64;                   ///< requests at once
+    int bodies = 48;                    ///< uploads and long JSON bodies at once; then 429
+    int bodies_per_address = 16;        ///< of those, from one address that nginx names
     int waiting = 256;                  ///< connections that may wait for a thread; then 503
     std::string accel;  ///< nginx's internal location of store/blobs, from which nginx sends files; or empty
     // [store]

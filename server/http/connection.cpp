@@ -12,7 +12,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
-constexpr std::size_t most_held = 16384, most_lingering = 16u << 20;
+constexpr std::size_t most_held = 16384;
 constexpr milliseconds glance(10);  // how often `still_wanted` is asked
 
 bool must_wait() { return errno == EAGAIN || errno == EWOULDBLOCK; }
@@ -30,7 +30,9 @@ ssize_t uninterrupted(Call call) {
 
 Connection::Connection(int socket, const Patience& patience) : socket_(socket), patience_(patience) {}
 
-Connection::~Connection() { ::close(socket_); }
+Connection::~Connection() {
+    if (socket_ >= 0) ::close(socket_);
+}
 
 bool Connection::await(short event, milliseconds patience) const {
     const auto end = Clock::now() + patience;
@@ -112,18 +114,6 @@ bool Connection::send_all(const char* data, std::size_t size) const {
         size -= static_cast<std::size_t>(count);
     }
     return true;
-}
-
-void Connection::linger(milliseconds patience) const {
-    ::shutdown(socket_, SHUT_WR);
-    const auto end = Clock::now() + patience;
-    std::array<char, 65536> sink;
-    for (std::size_t total = 0; total < most_lingering && Clock::now() < end;) {
-        if (!await(POLLIN, patience / 10)) continue;
-        const ssize_t count = receive(sink.data(), sink.size());
-        if (count <= 0) return;
-        total += static_cast<std::size_t>(count);
-    }
 }
 
 }  // namespace hairbake

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <utility>
 
 namespace hairbake {
 
@@ -36,9 +37,8 @@ public:
     bool await_readable() const;
     bool await_writable() const;
 
-    /// Shuts down sending, and discards for that long what the client still sends. Otherwise a connection reset could
-    /// destroy the reply.
-    void linger(std::chrono::milliseconds patience) const;
+    /// Gives up the socket: the caller closes it. Nothing else may be called afterwards.
+    int release() { return std::exchange(socket_, -1); }
 
 private:
     bool await(short event, std::chrono::milliseconds patience) const;
@@ -46,7 +46,7 @@ private:
     ssize_t send(const char* data, std::size_t size) const;
     bool send_all(const char* data, std::size_t size) const;
 
-    const int socket_;
+    int socket_;
     const Patience patience_;
     std::array<char, 4096> ahead_;                 ///< read buffer
     std::size_t ahead_begin_ = 0, ahead_end_ = 0;  ///< the unread bytes in it

@@ -16,6 +16,7 @@
 #include "core/base/error.h"
 #include "server/http/connection.h"
 #include "server/http/connection_threads.h"
+#include "server/http/lingering.h"
 #include "server/http/problem.h"
 #include "server/http/target.h"
 #include "server/jobs/service.h"
@@ -25,10 +26,12 @@ namespace {
 
 using namespace std::chrono_literals;
 constexpr Connection::Patience patience{.first_byte = 10s, .read = 30s, .write = 60s};
-constexpr std::chrono::milliseconds lingering = 1s, lingering_refused = 20ms;
+constexpr std::chrono::milliseconds lingering = 1s;
+constexpr std::size_t most_lingering = 1000;  // connections
 /// A body of up to this size is in nginx's first read (proxy_buffer_size), so nginx need not buffer it.
 constexpr std::size_t one_read = 6144;
-const std::string any_path = "/";  // every request gets this path in the library; the routing is ours
+constexpr std::size_t longest_head = 64 << 10;  // as in nginx.conf
+const std::string any_path = "/";               // every request gets this path in the library; the routing is ours
 
 /// Whether the current connection's request was not read to its end.
 thread_local bool body_left = false;
@@ -40,7 +43,11 @@ public:
 
     bool is_readable() const override { return connection_.await_readable(); }
     bool is_writable() const override { return connection_.await_writable(); }
-    ssize_t read(char* data, std::size_t size) override { return connection_.read(data, size); }
+    ssize_t read(char* data, std::size_t size) override {
+        if (in_head_ && ++head_bytes_ > longest_head) return -1;  // the library reads a head byte by byte
+        return connection_.read(data, size);
+    }
+    void end_head() { in_head_ = false; }
     ssize_t write(const char* data, std::size_t size) override { return connection_.write(data, size); }
     void get_remote_ip_and_port(std::string&, int&) const override {}  // not used
     void get_local_ip_and_port(std::string&, int&) const override {}
@@ -48,6 +55,8 @@ public:
 
 private:
     Connection& connection_;
+    bool in_head_ = true;
+    std::size_t head_bytes_ = 0;
 };
 
 /// Calls `answer`; drops the connection when it throws, so that no exception ends a thread.
@@ -60,7 +69,7 @@ void or_drop(const std::function<void()>& answer) {
 }
 
 /// Never waits for the client: one thread refuses all connections.
-void refuse_connection(int accepted) {
+void refuse_connection(int accepted, Lingering& lingering) {
     Connection connection(accepted, {.first_byte = 0s, .read = 0s, .write = 0s});
     HttpReply busy = problem(503, "busy", "too many requests are waiting");
     const std::string text = "HTTP/1.1 503 Service Unavailable\r\nContent-Type: " + busy.type +
@@ -68,7 +77,7 @@ void refuse_connection(int accepted) {
                              "\r\nRetry-After: 2\r\nConnection: close\r\n\r\n" + busy.body;
     connection.write(text.data(), text.size());
     connection.flush();
-    connection.linger(lingering_refused);
+    lingering.add(connection.release());
 }
 
 bool is_chunked(const httplib::Request& request) { return request.has_header("Transfer-Encoding"); }
@@ -200,7 +209,7 @@ public:
           threads_(
               listening_.get(), settings.threads, settings.waiting,
               [this](int accepted) { or_drop([&] { serve_connection(accepted); }); },
-              [](int accepted) { or_drop([&] { refuse_connection(accepted); }); }) {
+              [this](int accepted) { or_drop([&] { refuse_connection(accepted, lingering_); }); }) {
         set_payload_max_length(std::numeric_limits<std::size_t>::max());  // the router limits bodies
         set_expect_100_continue_handler([](const httplib::Request&, httplib::Response&) { return 100; });
         handle_requests();
@@ -304,13 +313,14 @@ private:
         body_left = true;  // until the head is parsed
         serve_request(connection);
         connection.flush();
-        if (body_left) connection.linger(lingering);
+        if (body_left) lingering_.add(connection.release());
     }
 
     void serve_request(Connection& connection) {
         ConnectionStream stream(connection);
         bool closed = false;
-        process_request(stream, "", 0, "", 0, true, closed, [](httplib::Request& request) {
+        process_request(stream, "", 0, "", 0, true, closed, [&stream](httplib::Request& request) {
+            stream.end_head();
             request.path = any_path;  // the real path is in the target
             request.ranges.clear();   // we parse Range ourselves
         });
@@ -320,6 +330,7 @@ private:
     const std::string accel_;
     const std::string address_;
     const Descriptor listening_;
+    Lingering lingering_{lingering, most_lingering};
     ConnectionThreads threads_;
 };
 

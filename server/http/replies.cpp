@@ -82,14 +82,6 @@ Ranged ranged(const HttpRequest& request, std::uint64_t bytes, const std::string
 
 }  // namespace
 
-std::string read_text(const HttpRequest& request) {
-    std::string text;
-    request.read_body([&](std::span<const std::byte> bytes) {
-        text.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    });
-    return text;
-}
-
 HttpReply json_reply(int status, std::string json) {
     HttpReply reply;
     reply.status = status;

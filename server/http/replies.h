@@ -9,9 +9,6 @@
 
 namespace hairbake {
 
-/// The request's body as text. The router has limited its length.
-std::string read_text(const HttpRequest& request);
-
 HttpReply json_reply(int status, std::string json);
 
 /// The reply with a header `Warning: 299 - "TEXT"` for each text.

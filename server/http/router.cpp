@@ -11,6 +11,7 @@ namespace hairbake {
 namespace {
 
 using Parameters = std::map<std::string, std::string>;
+constexpr std::uint64_t long_body = 64 << 10;  // nginx forwards shorter ones whole, and they fit into memory
 
 /// The values of the pattern's {…}. Nothing when the path does not match.
 std::optional<Parameters> match(std::string_view pattern, const std::vector<std::string>& path) {
@@ -86,6 +87,10 @@ std::optional<HttpReply> wrong_body(const HttpRequest& request, const Route& rou
     return problem(415, "unsupported", "the body is " + type.substr(0, 80) + "; allowed is " + allowed, "Content-Type");
 }
 
+bool needs_place(const HttpRequest& request, const Route& route) {
+    return route.takes_place || request.content_length.value_or(route.body_limit) > long_body;
+}
+
 }  // namespace
 
 HttpReply Router::answer_or_throw(HttpRequest& request) const {
@@ -104,6 +109,10 @@ HttpReply Router::answer_or_throw(HttpRequest& request) const {
     }
     access_.check(request, route->scope);
     if (std::optional<HttpReply> wrong = wrong_body(request, *route)) return *wrong;
+    const auto place = needs_place(request, *route) ? places_.take(request.header("X-Forwarded-For").value_or(""))
+                                                    : std::optional<BodyPlaces::Place>();
+    if (needs_place(request, *route) && !place)
+        return problem(429, "too-many", "more uploads or long bodies at once than allowed").with("Retry-After", "1");
     // The length of the body is limited here, for all handlers.
     const auto read = request.read_body;
     request.read_body = [read,

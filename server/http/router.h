@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "server/http/access.h"
+#include "server/http/body_places.h"
 #include "server/http/message.h"
 
 namespace hairbake {
@@ -19,15 +20,17 @@ struct Route {
     std::function<HttpReply(HttpRequest&)> handle;
     /// Allowed media types of the body; a body without Content-Type is taken as any of them. Empty: the handler checks.
     std::vector<std::string> types = {};
+    bool takes_place = false;  ///< of BodyPlaces, for each body: nginx forwards it while it arrives
 };
 
 /// Thread-safe.
 class Router {
 public:
-    Router(std::vector<Route> routes, Access& access) : routes_(std::move(routes)), access_(access) {}
+    Router(std::vector<Route> routes, Access& access, BodyPlaces& places)
+        : routes_(std::move(routes)), access_(access), places_(places) {}
 
-    /// Finds the route, checks access and the body's framing, limit and type, and calls the handler. Answers 404, 405 and
-    /// OPTIONS itself. All failures become problem+json.
+    /// Finds the route, checks access and the body's framing, limit, type and place, and calls the handler. Answers 404,
+    /// 405, 429 and OPTIONS itself. All failures become problem+json.
     HttpReply answer(HttpRequest& request) const;
 
     const std::vector<Route>& routes() const { return routes_; }
@@ -37,6 +40,7 @@ private:
 
     std::vector<Route> routes_;
     Access& access_;
+    BodyPlaces& places_;
 };
 
 }  // namespace hairbake

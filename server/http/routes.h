@@ -4,19 +4,20 @@
 #include <filesystem>
 #include <vector>
 
+#include "server/http/json_bodies.h"
 #include "server/http/metrics.h"
 #include "server/http/router.h"
 #include "server/jobs/service.h"
 
 namespace hairbake {
 
-std::vector<Route> input_routes(Service& service);                    ///< blobs, models, environments, names
-std::vector<Route> bake_routes(Service& service);                     ///< bakes, rebakes, batches
-std::vector<Route> upload_routes(Service& service);                   ///< tus
-std::vector<Route> page_routes(const std::filesystem::path& folder);  ///< the web page
+std::vector<Route> input_routes(Service& service, JsonBodies& bodies);  ///< blobs, models, environments, names
+std::vector<Route> bake_routes(Service& service, JsonBodies& bodies);   ///< bakes, rebakes, batches
+std::vector<Route> upload_routes(Service& service);                     ///< tus
+std::vector<Route> page_routes(const std::filesystem::path& folder);    ///< the web page
 std::vector<Route> service_routes(Service& service, Access& access, Metrics& metrics);  ///< health, version, session
 
-std::vector<Route> all_routes(Service& service, Access& access, Metrics& metrics);
+std::vector<Route> all_routes(Service& service, JsonBodies& bodies, Access& access, Metrics& metrics);
 
 /// A number of the query in [low, high]; `otherwise` when it is not given.
 /// Throws Refusal(unprocessable).

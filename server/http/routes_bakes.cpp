@@ -1,11 +1,11 @@
-#include "server/http/body_schema.h"
+#include "server/http/json_bodies.h"
 #include "server/http/replies.h"
 #include "server/http/routes.h"
 
 namespace hairbake {
 namespace {
 
-constexpr std::uint64_t request_limit = 1 << 20, rebake_limit = 16 << 20;
+constexpr std::uint64_t request_limit = 1 << 20, rebake_limit = 4 << 20;
 
 /// Digests may be written with or without "sha256:".
 std::string text_in_query(const HttpRequest& request, const std::string& name) {
@@ -14,8 +14,9 @@ std::string text_in_query(const HttpRequest& request, const std::string& name) {
     return found->second.starts_with("sha256:") ? found->second.substr(7) : found->second;
 }
 
-HttpReply post_bake(Service& service, HttpRequest& request) {
-    const Service::Answer answer = service.submit(read_json(request, "BakeRequest"));
+HttpReply post_bake(Service& service, JsonBodies& bodies, HttpRequest& request) {
+    const JsonBody body = bodies.read(request, "BakeRequest");
+    const Service::Answer answer = service.submit(body.text);
     HttpReply reply = json_reply(answer.state == JobState::done ? 200 : 202, answer.json);
     reply.with("Location", "/v1/bakes/" + answer.id);
     return with_warnings(std::move(reply), answer.warnings);
@@ -44,10 +45,11 @@ HttpReply get_file(Service& service, HttpRequest& request) {
     return file_reply(request, service.open_blob(*file.blob), *file.blob, type);
 }
 
-HttpReply post_rebake(Service& service, HttpRequest& request) {
+HttpReply post_rebake(Service& service, JsonBodies& bodies, HttpRequest& request) {
     const auto dry = request.query.find("dry_run");
     const bool dry_run = dry != request.query.end() && dry->second != "0";
-    const Batches::Rebaked rebaked = service.batches().rebake(read_json(request, "RebakeRequest"), dry_run);
+    const JsonBody body = bodies.read(request, "RebakeRequest");
+    const Batches::Rebaked rebaked = service.batches().rebake(body.text, dry_run);
     HttpReply reply = json_reply(dry_run ? 200 : 202, rebaked.json);
     if (!dry_run) reply.with("Location", "/v1/batches/" + rebaked.batch);
     return with_warnings(std::move(reply), rebaked.warnings);
@@ -55,12 +57,15 @@ HttpReply post_rebake(Service& service, HttpRequest& request) {
 
 }  // namespace
 
-std::vector<Route> bake_routes(Service& service) {
+std::vector<Route> bake_routes(Service& service, JsonBodies& bodies) {
     const auto bound = [&service](HttpReply (*handle)(Service&, HttpRequest&)) {
         return [&service, handle](HttpRequest& request) { return handle(service, request); };
     };
+    const auto with_body = [&](HttpReply (*handle)(Service&, JsonBodies&, HttpRequest&)) {
+        return [&service, &bodies, handle](HttpRequest& request) { return handle(service, bodies, request); };
+    };
     return {
-        {"POST", "/v1/bakes", Scope::bake, request_limit, bound(post_bake), {"application/json"}},
+        {"POST", "/v1/bakes", Scope::bake, request_limit, with_body(post_bake), {"application/json"}},
         {"GET", "/v1/bakes", Scope::read, 0, bound(list_bakes)},
         {"GET", "/v1/bakes/{id}", Scope::read, 0,
          [&service](HttpRequest& r) {
@@ -73,7 +78,7 @@ std::vector<Route> bake_routes(Service& service) {
              return json_reply(200, service.bakes().get(r.parameters.at("id")).json);
          }},
         {"GET", "/v1/bakes/{id}/files/{name}", Scope::read, 0, bound(get_file)},
-        {"POST", "/v1/rebakes", Scope::bake, rebake_limit, bound(post_rebake), {"application/json"}},
+        {"POST", "/v1/rebakes", Scope::bake, rebake_limit, with_body(post_rebake), {"application/json"}},
         {"GET", "/v1/batches/{id}", Scope::read, 0,
          [&service](HttpRequest& r) { return cached_json(r, service.batches().get(r.parameters.at("id"))); }},
     };

@@ -1,6 +1,6 @@
 #include <nlohmann/json.hpp>
 
-#include "server/http/body_schema.h"
+#include "server/http/json_bodies.h"
 #include "server/http/problem.h"
 #include "server/http/replies.h"
 #include "server/http/routes.h"
@@ -45,20 +45,20 @@ HttpReply get_blob(Service& service, HttpRequest& request) {
 }
 
 /// The digest that the JSON body names.
-std::string digest_in(const HttpRequest& request) {
-    const std::string digest = Json::parse(read_json(request, "InputRequest"))["sha256"].get<std::string>();
+std::string digest_in(JsonBodies& bodies, const HttpRequest& request) {
+    const std::string digest = Json::parse(bodies.read(request, "InputRequest").text)["sha256"].get<std::string>();
     return digest.starts_with("sha256:") ? digest.substr(7) : digest;
 }
 
 /// A JSON body names the digest of a stored blob; any other body is the file itself.
-HttpReply add_input(Service& service, HttpRequest& request, const std::string& kind) {
+HttpReply add_input(Service& service, JsonBodies& bodies, HttpRequest& request, const std::string& kind) {
     const std::string type = request.header("Content-Type").value_or("");
     std::string digest;
     if (type.starts_with("application/json")) {
         if (request.content_length.value_or(UINT64_MAX) > json_limit)
             throw Refusal(Refused::too_large,
                           "a JSON body has a length, of at most " + std::to_string(json_limit) + " bytes");
-        digest = digest_in(request);
+        digest = digest_in(bodies, request);
     } else if (type.starts_with("application/octet-stream")) {
         digest = receive_blob(service, request, "").digest;
     } else {
@@ -76,8 +76,8 @@ HttpReply get_thumbnail(Service& service, HttpRequest& request, const std::strin
     return file_reply(request, service.open_blob(digest), digest, "image/png");
 }
 
-HttpReply put_name(Service& service, HttpRequest& request) {
-    const Json body = Json::parse(read_json(request, "NameRequest"));
+HttpReply put_name(Service& service, JsonBodies& bodies, HttpRequest& request) {
+    const Json body = Json::parse(bodies.read(request, "NameRequest").text);
     return json_reply(200,
                       service.names().put(request.parameters.at("kind"), request.parameters.at("path"),
                                           body["sha256"].get<std::string>(), body.value("note", ""), request.caller));
@@ -112,7 +112,7 @@ HttpReply delete_input(Service& service, HttpRequest& request, const std::string
 }
 
 /// The routes of models or of environments.
-std::vector<Route> catalog_routes(Service& service, const std::string& kind) {
+std::vector<Route> catalog_routes(Service& service, JsonBodies& bodies, const std::string& kind) {
     const auto bound = [&service, kind](HttpReply (*handle)(Service&, HttpRequest&, const std::string&)) {
         return [&service, kind, handle](HttpRequest& request) { return handle(service, request, kind); };
     };
@@ -122,8 +122,9 @@ std::vector<Route> catalog_routes(Service& service, const std::string& kind) {
          base,
          Scope::upload,
          service.settings().blob_bytes,
-         bound(add_input),
-         {"application/json", "application/octet-stream"}},
+         [&service, &bodies, kind](HttpRequest& request) { return add_input(service, bodies, request, kind); },
+         {"application/json", "application/octet-stream"},
+         true},
         {"GET", base, Scope::read, 0, bound(list_inputs)},
         {"GET", one, Scope::read, 0, bound(get_input)},
         {"GET", one + "/thumbnail.png", Scope::read, 0, bound(get_thumbnail)},
@@ -133,19 +134,24 @@ std::vector<Route> catalog_routes(Service& service, const std::string& kind) {
 
 }  // namespace
 
-std::vector<Route> input_routes(Service& service) {
+std::vector<Route> input_routes(Service& service, JsonBodies& bodies) {
     const auto bound = [&service](HttpReply (*handle)(Service&, HttpRequest&)) {
         return [&service, handle](HttpRequest& request) { return handle(service, request); };
     };
     std::vector<Route> routes{
-        {"PUT", "/v1/blobs/{sha256}", Scope::upload, service.settings().blob_bytes, bound(put_blob)},
+        {"PUT", "/v1/blobs/{sha256}", Scope::upload, service.settings().blob_bytes, bound(put_blob), {}, true},
         {"GET", "/v1/blobs/{sha256}", Scope::read, 0, bound(get_blob)},
-        {"PUT", "/v1/names/{kind}/{path...}", Scope::upload, json_limit, bound(put_name), {"application/json"}},
+        {"PUT",
+         "/v1/names/{kind}/{path...}",
+         Scope::upload,
+         json_limit,
+         [&](HttpRequest& request) { return put_name(service, bodies, request); },
+         {"application/json"}},
         {"GET", "/v1/names/{kind}", Scope::read, 0, bound(list_names)},
         {"GET", "/v1/names/{kind}/{path...}", Scope::read, 0, bound(get_name)},
     };
     for (const char* kind : {"model", "environment"}) {
-        const std::vector<Route> of_kind = catalog_routes(service, kind);
+        const std::vector<Route> of_kind = catalog_routes(service, bodies, kind);
         routes.insert(routes.end(), of_kind.begin(), of_kind.end());
     }
     return routes;

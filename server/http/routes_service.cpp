@@ -69,10 +69,10 @@ std::vector<Route> service_routes(Service& service, Access& access, Metrics& met
     };
 }
 
-std::vector<Route> all_routes(Service& service, Access& access, Metrics& metrics) {
+std::vector<Route> all_routes(Service& service, JsonBodies& bodies, Access& access, Metrics& metrics) {
     std::vector<Route> routes = service_routes(service, access, metrics);
-    for (std::vector<Route> group : {input_routes(service), bake_routes(service), upload_routes(service),
-                                     page_routes(service.settings().web.value_or(""))})
+    for (std::vector<Route> group : {input_routes(service, bodies), bake_routes(service, bodies),
+                                     upload_routes(service), page_routes(service.settings().web.value_or(""))})
         routes.insert(routes.end(), std::make_move_iterator(group.begin()), std::make_move_iterator(group.end()));
     return routes;
 }

@@ -126,7 +126,8 @@ std::vector<Route> upload_routes(Service& service) {
          Scope::upload,
          service.settings().blob_bytes,
          tus(service, append),
-         {"application/offset+octet-stream"}},
+         {"application/offset+octet-stream"},
+         true},
         {"DELETE", one, Scope::upload, 0,
          tus(service,
              [](Service& s, HttpRequest& request) {

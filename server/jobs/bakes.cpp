@@ -165,7 +165,7 @@ BakeView Bakes::get(const std::string& id) {
         done = rows[0].text(1) == "done";
     });
     answer.digest = Digest().add(answer.json).hex();
-    if (done) done_.keep(version, id, answer);
+    if (done) done_.keep(version, id, answer, answer.json.size());
     return answer;
 }
 

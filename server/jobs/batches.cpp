@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
-#include <set>
+#include <span>
+#include <unordered_set>
 
 #include "core/request/stages.h"
 #include "server/jobs/bake_request.h"
@@ -19,7 +22,8 @@ namespace hairbake {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr std::size_t most_bakes = 100'000;
+constexpr std::size_t most_bakes = 100'000, most_listed = 50'000, most_shown = 100, planned_in_one_read = 50;
+const std::string up_to_most = " LIMIT " + std::to_string(most_bakes + 1);
 
 [[noreturn]] void refuse(const std::string& field, const std::string& message) {
     throw Refusal(Refused::unprocessable, message, field);
@@ -59,8 +63,8 @@ Json parse_body(const std::string& text) {
 
 std::vector<std::string> strings(const Json& body, const char* field) {
     std::vector<std::string> list;
-    if (!body[field].is_array() || body[field].empty() || body[field].size() > most_bakes)
-        refuse(field, std::string(field) + " is not a list of 1 to 100000 strings");
+    if (!body[field].is_array() || body[field].empty() || body[field].size() > most_listed)
+        refuse(field, std::string(field) + " is not a list of 1 to 50000 strings");
     for (const Json& item : body[field]) {
         if (!item.is_string()) refuse(field, std::string(field) + " is not a list of strings");
         list.push_back(item.get<std::string>());
@@ -73,94 +77,153 @@ std::string text(const Json& body, const char* field) {
     return body[field].get<std::string>();
 }
 
-/// Requests and names of the affected bakes. Several may lead to the same new request; rebake() takes each once.
-std::vector<SqlRow> affected(Sql& sql, const Json& body) {
-    const std::string select = "SELECT request, names FROM bakes WHERE hair IS NOT NULL AND ";
+/// `seq` of bakes, each once, in the order in which they were found.
+class FoundBakes {
+public:
+    /// Takes the first column of the rows; returns whether there was one.
+    bool add(const std::vector<SqlRow>& rows) {
+        for (const SqlRow& row : rows)
+            if (known_.insert(row.integer(0)).second) order_.push_back(row.integer(0));
+        return !rows.empty();
+    }
+    const std::vector<std::int64_t>& order() const { return order_; }
+
+private:
+    std::unordered_set<std::int64_t> known_;
+    std::vector<std::int64_t> order_;
+};
+
+/// The bakes that the body selects. Several may lead to the same new request.
+std::vector<std::int64_t> affected(Sql& sql, const Json& body) {
+    const std::string select = "SELECT seq FROM bakes WHERE hair IS NOT NULL AND ";
     const std::string wanted = select + "state NOT IN ('failed', 'cancelled') AND ";
-    std::vector<SqlRow> rows;
+    FoundBakes found;
     if (body.contains("bakes")) {
-        for (const std::string& id : strings(body, "bakes")) {
-            const auto found = sql.rows(select + "id = ?", {id});
-            if (found.empty()) refuse("bakes", "there is no bake " + id.substr(0, 64) + " with a hair model");
-            rows.push_back(found[0]);
-        }
+        for (const std::string& id : strings(body, "bakes"))
+            if (!found.add(sql.rows(select + "id = ?", {id})))
+                refuse("bakes", "there is no bake " + id.substr(0, 64) + " with a hair model");
     } else if (body.contains("models")) {
         for (const std::string& model : strings(body, "models")) {
             const std::string digest = named_digest(sql, model, "model", "models");
-            const auto found = sql.rows(wanted + "hair = ? ORDER BY seq DESC LIMIT 1", {digest});
-            if (found.empty()) refuse("models", "there is no bake of the model " + model.substr(0, 80));
-            rows.push_back(found[0]);
+            if (!found.add(sql.rows(wanted + "hair = ? ORDER BY seq DESC LIMIT 1", {digest})))
+                refuse("models", "there is no bake of the model " + model.substr(0, 80));
         }
     } else if (body.contains("replaces")) {
         const std::string digest = named_digest(sql, text(body, "replaces"), "environment", "replaces");
-        rows = sql.rows(wanted + "environment = ? ORDER BY seq", {digest});
+        found.add(sql.rows(wanted + "environment = ? ORDER BY seq" + up_to_most, {digest}));
     } else {
-        rows = sql.rows(
-            wanted + "id IN (SELECT bake FROM bake_names WHERE field = 'environment' AND path = ?) ORDER BY seq",
-            {text(body, "name")});
+        found.add(sql.rows(wanted +
+                               "id IN (SELECT bake FROM bake_names WHERE field = 'environment' AND path = ?) ORDER BY "
+                               "seq" +
+                               up_to_most,
+                           {text(body, "name")}));
     }
-    if (rows.empty())
+    if (found.order().empty())
         refuse(body.contains("name") ? "name" : "replaces", "no bakes of a hair model use this environment");
-    if (rows.size() > most_bakes) throw Refusal(Refused::unprocessable, "more than 100000 bakes are affected");
-    return rows;
+    if (found.order().size() > most_bakes) throw Refusal(Refused::unprocessable, "more than 100000 bakes are affected");
+    return found.order();
 }
 
-struct PlannedAgain {
-    BakePlan plan;
-    std::vector<std::string> warnings;
+/// The body without its selection: JSON of the request's form.
+std::string changes_in(Json body) {
+    for (const char* selection : selections) body.erase(selection);
+    return body.dump();
+}
+
+/// The body with the first entries of its lists, for the batch's view.
+std::string shown_request(Json body) {
+    for (const char* list : {"bakes", "models"})
+        if (const auto found = body.find(list); found != body.end() && found->size() > most_shown)
+            found->erase(found->begin() + most_shown, found->end());
+    return body.dump();
+}
+
+/// Plans the affected bakes under their new lighting, one at a time.
+class Replanning {
+public:
+    explicit Replanning(const Json& body) : body_(body), changes_(changes_in(body)) {}
+
+    std::vector<std::int64_t> bakes(Sql& sql) const { return affected(sql, body_); }
+
+    /// A bake that was removed since bakes() is passed over.
+    void plan(Sql& sql, std::span<const std::int64_t> bakes, const std::function<void(const BakePlan&)>& take) {
+        for (const std::int64_t seq : bakes)
+            for (const SqlRow& row : sql.rows("SELECT request, names FROM bakes WHERE seq = ?", {seq}))
+                take(plan_again(sql, row));
+    }
+    const std::vector<std::string>& warnings() const { return warnings_; }
+
+private:
+    BakePlan plan_again(Sql& sql, const SqlRow& old) {
+        AskedBake asked = read_bake_request(sql, old.text(0), changes_);
+        warnings_ = std::move(asked.warnings);  // the same for all: of the fields in the body
+        BakePlan plan = plan_bake(sql, asked);
+        Json names = Json::parse(old.text(1));  // hair and meshes stay those that the names stood for
+        names.erase("environment");
+        names.update(Json::parse(plan.names));
+        plan.names = names.dump();
+        return plan;
+    }
+
+    const Json& body_;
+    const std::string changes_;
+    std::vector<std::string> warnings_;
 };
 
-PlannedAgain plan_again(Sql& sql, const SqlRow& old, const Json& body) {
-    Json changes = body;
-    for (const char* selection : selections) changes.erase(selection);
-    const AskedBake asked = read_bake_request(sql, old.text(0), changes.dump());
-    BakePlan plan = plan_bake(sql, asked);
-    Json names = Json::parse(old.text(1));  // hair and meshes stay those that the names stood for
-    names.erase("environment");
-    names.update(Json::parse(plan.names));
-    plan.names = names.dump();
-    return {std::move(plan), asked.warnings};
-}
-
 /// How many bakes and stages are stored, and how many stages must run.
-Json forecast(Sql& sql, const std::vector<BakePlan>& plans) {
-    std::set<std::string> seen;
-    const auto done = std::count_if(plans.begin(), plans.end(), [&](const BakePlan& plan) {
-        return !sql.rows("SELECT 1 FROM bakes WHERE id = ? AND state = 'done'", {plan.id}).empty();
-    });
-    Json reused = Json::object();
-    for (const Stage& stage : stages()) reused[std::string(stage.name)] = 0;
-    Json computed = reused;
-    for (const BakePlan& plan : plans)
+class Forecast {
+public:
+    Forecast() {
+        for (const Stage& stage : stages()) reused_[std::string(stage.name)] = 0;
+        computed_ = reused_;
+    }
+
+    void add(Sql& sql, const BakePlan& plan) {
+        if (!bakes_.insert(plan.id.substr(0, known_digits)).second) return;
+        done_ += !sql.rows("SELECT 1 FROM bakes WHERE id = ? AND state = 'done'", {plan.id}).empty();
         for (const StagePlan& stage : plan.stages)
-            if (seen.insert(stage.key).second) {
-                Json& count = is_stored(sql, stage) ? reused[stage.kind] : computed[stage.kind];
-                count = count.get<int>() + 1;
-            }
-    return {{"bakes", plans.size()}, {"done_bakes", done}, {"reused_stages", reused}, {"computed_stages", computed}};
+            if (stages_.insert(stage.key.substr(0, known_digits)).second)
+                ++(is_stored(sql, stage) ? reused_ : computed_)[stage.kind];
+    }
+
+    std::string text() const {
+        return Json{
+            {"bakes", bakes_.size()}, {"done_bakes", done_}, {"reused_stages", reused_}, {"computed_stages", computed_}}
+            .dump();
+    }
+
+private:
+    static constexpr std::size_t known_digits = 15;  // 60 bits of a digest: fits into a string without an allocation
+
+    std::unordered_set<std::string> bakes_, stages_;  ///< beginnings of their ids
+    std::int64_t done_ = 0;
+    std::map<std::string, std::int64_t> reused_, computed_;
+};
+
+/// Others read and write meanwhile: a forecast of 100,000 bakes takes many seconds.
+std::string forecast(Database& database, Replanning& replanning) {
+    std::vector<std::int64_t> bakes;
+    database.read([&](Sql& sql) { bakes = replanning.bakes(sql); });
+    Forecast forecast;
+    for (std::span<const std::int64_t> rest = bakes; !rest.empty();) {
+        const auto now = rest.first(std::min(rest.size(), planned_in_one_read));
+        database.read(
+            [&](Sql& sql) { replanning.plan(sql, now, [&](const BakePlan& plan) { forecast.add(sql, plan); }); });
+        rest = rest.subspan(now.size());
+    }
+    return forecast.text();
 }
 
 }  // namespace
 
 Batches::Rebaked Batches::rebake(const std::string& text, bool dry_run) {
     const Json body = parse_body(text);
-    std::vector<BakePlan> plans;
-    std::vector<std::string> warnings;
-    Json answer;
-    const auto held = database_.lock();  // a stage that is stored now is still stored when its bake is queued
-    database_.read([&](Sql& sql) {
-        std::set<std::string> seen;
-        for (const SqlRow& row : affected(sql, body)) {
-            PlannedAgain planned = plan_again(sql, row, body);
-            if (seen.insert(planned.plan.id).second) plans.push_back(std::move(planned.plan));
-            warnings = std::move(planned.warnings);  // the same for all: of the fields in `body`
-        }
-        answer = forecast(sql, plans);
-    });
-    if (dry_run) return {{}, answer.dump(), warnings};
+    Replanning replanning(body);
+    if (dry_run) return {{}, forecast(database_, replanning), replanning.warnings()};
     const std::string id = random_name();
-    queue_.submit(plans, id, body.dump());
-    return {id, get(id), warnings};
+    queue_.submit_batch(id, shown_request(body),
+                        [&](Sql& sql, const auto& take) { replanning.plan(sql, replanning.bakes(sql), take); });
+    return {id, get(id), replanning.warnings()};
 }
 
 std::string Batches::get(const std::string& id) {
@@ -188,7 +251,7 @@ std::string Batches::get(const std::string& id) {
         answer["links"] = {{"self", "/v1/batches/" + id}, {"bakes", "/v1/bakes?batch=" + id}};
     });
     const std::string text = answer.dump();
-    views_.keep(version, id, text);
+    views_.keep(version, id, text, text.size());
     return text;
 }
 

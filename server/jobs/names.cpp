@@ -14,6 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 constexpr std::size_t longest_path = 200, longest_note = 500;
+constexpr std::int64_t most_shown = 500;  // versions of a name
 
 void check_name(const std::string& kind, const std::string& path) {
     if (!is_name_kind(kind))
@@ -38,8 +39,8 @@ Json version_json(const std::string& kind, const std::string& path, const SqlRow
 Json name_json(Sql& sql, const std::string& kind, const std::string& path) {
     const auto rows = sql.rows(
         "SELECT version, sha256, note, token, created FROM names WHERE kind = ? AND path = ? "
-        "ORDER BY version DESC",
-        {kind, path});
+        "ORDER BY version DESC LIMIT ?",
+        {kind, path, most_shown});
     if (rows.empty()) throw Refusal(Refused::not_found, "there is no name " + kind + "/" + path);
     Json answer = version_json(kind, path, rows[0], 0);
     answer["versions"] = Json::array();

@@ -122,18 +122,24 @@ bool Queue::note_done(Sql& sql, const std::string& bake, const std::string& name
     return true;
 }
 
-std::vector<Submitted> Queue::submit(const std::vector<BakePlan>& plans, const std::string& batch,
-                                     const std::string& batch_request) {
+std::vector<Submitted> Queue::submit(const std::vector<BakePlan>& plans) {
     std::vector<Submitted> answers;
     database_.write([&](Sql& sql) {
         for (const BakePlan& plan : plans) answers.push_back(add_bake(sql, plan));
-        if (batch.empty()) return;
-        sql.run("INSERT INTO batches(id, request, created) VALUES(?, ?, ?)", {batch, batch_request, now()});
-        for (const BakePlan& plan : plans)
-            sql.run("INSERT OR IGNORE INTO batch_bakes SELECT ?, id, seq FROM bakes WHERE id = ?", {batch, plan.id});
     });
     wake();
     return answers;
+}
+
+void Queue::submit_batch(const std::string& id, const std::string& request, const EachPlan& each_plan) {
+    database_.write([&](Sql& sql) {
+        sql.run("INSERT INTO batches(id, request, created) VALUES(?, ?, ?)", {id, request, now()});
+        each_plan(sql, [&](const BakePlan& plan) {
+            add_bake(sql, plan);
+            sql.run("INSERT OR IGNORE INTO batch_bakes SELECT ?, id, seq FROM bakes WHERE id = ?", {id, plan.id});
+        });
+    });
+    wake();
 }
 
 // ---- claims --------------------------------------------------------------------------------------------------------

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -68,10 +69,14 @@ public:
     /// Whether the bake is done and `names` (as in BakePlan) are noted with it; then its stages count as used just now.
     bool note_done(Sql& sql, const std::string& bake, const std::string& names);
 
-    /// Takes requests in one transaction; a `batch` that is not empty is made with them. The caller checked the inputs
-    /// under database.lock() and still holds it.
-    std::vector<Submitted> submit(const std::vector<BakePlan>& plans, const std::string& batch = {},
-                                  const std::string& batch_request = {});
+    /// Takes requests in one transaction. The caller checked the inputs under database.lock() and still holds it.
+    std::vector<Submitted> submit(const std::vector<BakePlan>& plans);
+
+    /// Calls its argument with each plan of a batch. Plans are made one at a time: a batch can have 100,000.
+    using EachPlan = std::function<void(Sql& sql, const std::function<void(const BakePlan&)>& take)>;
+    /// Makes the batch `id` and takes its requests in one transaction, in which `each_plan` makes the plans. What it
+    /// throws undoes everything. `request` is JSON.
+    void submit_batch(const std::string& id, const std::string& request, const EachPlan& each_plan);
 
     /// The next stage by priority, then age; blocks until there is one. Nothing after stop().
     std::optional<ClaimedStage> claim();

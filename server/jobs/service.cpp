@@ -117,6 +117,7 @@ void Service::stop() {
     parts_->maintenance->stop();
 }
 
+std::filesystem::path Service::incoming_folder() const { return parts_->store.incoming_folder(); }
 const Settings& Service::settings() const { return parts_->settings; }
 Bakes& Service::bakes() { return parts_->bakes; }
 Batches& Service::batches() { return parts_->batches; }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -78,6 +79,7 @@ public:
     Counts counts();
 
     const Settings& settings() const;
+    std::filesystem::path incoming_folder() const;  ///< of files that are under way; emptied at boot
     Bakes& bakes();
     Batches& batches();
     Catalog& catalog();

@@ -1,6 +1,7 @@
 // A cache of replies that depend on the database alone.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <mutex>
 #include <optional>
@@ -23,19 +24,24 @@ public:
     }
 
     /// `version` is the Database::version_read() of the read() that made the view.
-    void keep(std::uint64_t version, const std::string& id, const View& view) {
+    /// `bytes` is the view's size in memory.
+    void keep(std::uint64_t version, const std::string& id, const View& view, std::size_t bytes) {
         const std::lock_guard lock(mutex_);
-        if (version < version_) return;
-        if (version > version_ || views_.size() >= most_views) views_.clear();
+        if (version < version_ || bytes > most_bytes / 8) return;
+        if (version > version_ || views_.size() >= most_views || bytes_ + bytes > most_bytes) {
+            views_.clear();
+            bytes_ = 0;
+        }
         version_ = version;
-        views_[id] = view;
+        if (views_.emplace(id, view).second) bytes_ += bytes;
     }
 
 private:
-    static constexpr std::size_t most_views = 1000;
+    static constexpr std::size_t most_views = 1000, most_bytes = 8 << 20;
 
     std::mutex mutex_;  ///< guards the members below
     std::uint64_t version_ = 0;
+    std::size_t bytes_ = 0;  ///< of all views
     std::unordered_map<std::string, View> views_;
 };
 

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <span>
 
 #include "core/base/assert.h"
 #include "core/base/digest.h"
 #include "core/base/error.h"
+#include "core/base/json_nesting.h"
 #include "core/request/request_json.h"
 #include "core/request/stages.h"
 #include "server/jobs/queue.h"
@@ -31,6 +31,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using End = Outcome::End;
 constexpr std::chrono::seconds retry_after{1};
+constexpr std::size_t longest_manifest = 512 << 10;  // bytes; the longest ones have some 50 kB
 
 /// The request's fields that name files, with their digests.
 std::vector<std::pair<std::string, std::string>> files_of(const Json& request) {
@@ -193,7 +194,13 @@ void WorkerPool::remove_spoiled_inputs(const std::vector<std::string>& digests) 
 /// names, or is of another version.
 std::string WorkerPool::checked_manifest(const ClaimedStage& stage, const fs::path& folder) {
     std::ifstream stream(folder / "manifest.json", std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    std::string text(longest_manifest + 1, '\0');
+    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > longest_manifest || nested_deeper_than(text, deepest_json))
+        throw Error(ErrorKind::internal, "the worker's manifest is longer than " + std::to_string(longest_manifest) +
+                                             " bytes, or nested deeper than " + std::to_string(deepest_json) +
+                                             " levels");
     const Json manifest = Json::parse(text, nullptr, false);
     if (!manifest.is_object())
         throw Error(ErrorKind::internal, "the worker reported success, but its manifest is missing or no JSON");

@@ -7,19 +7,22 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error_kind_names.h"
+#include "core/base/json_nesting.h"
 
 namespace hairbake {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr std::size_t longest_line = 1 << 20, piece_bytes = 64 << 10;
+constexpr std::size_t longest_line = 1 << 20, piece_bytes = 64 << 10, longest_text = 4000, longest_facts = 64 << 10;
 constexpr std::uint64_t most_bytes = 64 << 20;
 constexpr int pieces_at_once = 64;
 
-/// "" when the member is missing or no text.
+/// "" when the member is missing or no text. A longer text is cut: it goes into the database and many replies.
 std::string text(const Json& object, const char* name) {
     const auto found = object.find(name);
-    return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+    if (found == object.end() || !found->is_string()) return {};
+    const auto& whole = found->get_ref<const std::string&>();
+    return whole.size() <= longest_text ? whole : whole.substr(0, longest_text) + "...";
 }
 
 }  // namespace
@@ -49,6 +52,7 @@ bool WorkerWords::read_more() {
 }
 
 void WorkerWords::read_line(const std::string& line) {
+    if (nested_deeper_than(line, deepest_json)) return;
     const Json words = Json::parse(line, nullptr, false);
     if (!words.is_object()) return;
     if (words.contains("phase")) {
@@ -56,7 +60,8 @@ void WorkerWords::read_line(const std::string& line) {
         on_progress_(text(words, "phase"),
                      fraction != words.end() && fraction->is_number() ? fraction->get<double>() : 0);
     } else if (words.contains("done")) {
-        last_word_ = LastWord{std::nullopt, words["done"].dump(), {}, {}};
+        std::string facts = words["done"].dump();
+        if (facts.size() <= longest_facts) last_word_ = LastWord{std::nullopt, std::move(facts), {}, {}};
     } else if (words.contains("error") && words["error"].is_object()) {
         const Json& error = words["error"];
         last_word_ = LastWord{find_in(error_kind_names, text(error, "kind")).value_or(ErrorKind::internal), "{}",

@@ -1,5 +1,6 @@
 #include "server/worker/limits.h"
 
+#include <fcntl.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -31,6 +32,14 @@ void say_out_of_memory() {
     _exit(4);
 }
 
+/// When the memory of the machine or of the service's unit is used up, the kernel ends a worker and not the daemon.
+void offer_to_the_kernel() {
+    const int file = ::open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
+    if (file < 0) return;
+    [[maybe_unused]] const ssize_t written = ::write(file, "500", 3);
+    ::close(file);
+}
+
 }  // namespace
 
 void report_memory_exhaustion() {
@@ -50,6 +59,7 @@ void report_memory_exhaustion() {
 }
 
 void apply(const Limits& limits) {
+    offer_to_the_kernel();
     if (limits.parent != 0) {
         ::prctl(PR_SET_PDEATHSIG, SIGKILL);
         if (::getppid() != limits.parent) throw Error(ErrorKind::cancelled, "the daemon is gone");

@@ -24,6 +24,8 @@ TEST_F(SettingsTest, TheDocumentedFileHasEveryDefault) {
     EXPECT_EQ(from_file.port, defaults.port);
     EXPECT_EQ(from_file.threads, defaults.threads);
     EXPECT_EQ(from_file.waiting, defaults.waiting);
+    EXPECT_EQ(from_file.bodies, defaults.bodies);
+    EXPECT_EQ(from_file.bodies_per_address, defaults.bodies_per_address);
     EXPECT_EQ(from_file.budget_bytes, defaults.budget_bytes);
     EXPECT_EQ(from_file.blob_bytes, defaults.blob_bytes);
     EXPECT_EQ(from_file.upload_lifetime_s, defaults.upload_lifetime_s);

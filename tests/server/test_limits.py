@@ -112,6 +112,20 @@ class Connections(unittest.TestCase):
                 s.close()
             self.assertEqual(d.ask("GET", "/healthz").status, 200)
 
+    def test_refused_bodies_occupy_no_thread(self):
+        """A client that was refused and does not end its body: the daemon reads on for a while, in one thread for all."""
+        tokens = f'[[token]]\nname = "a"\nsha256 = "{sha256(b"a")}"\nscopes = ["upload"]\n'
+        with Daemon(listen="port = 0\nthreads = 2\nwaiting = 1", tokens=tokens) as d:
+            held = []
+            for token in ("", "Authorization: Bearer b", "Authorization: Bearer a") * 20:
+                s = d.connect()
+                s.sendall(head("PUT", f"/v1/blobs/{'0' * 64}", *([token] if token else []), f"Content-Length: {1 << 40}") + b"x")
+                self.assertIn(int(received(s, 12).split()[1]), (401, 413))  # and not 503
+                held.append(s)
+            for s in held:
+                s.sendall(b"more")  # none of them is reset yet
+                s.close()
+
     def test_out_of_descriptors_it_says_so_and_serves_again_when_there_are_some(self):
         with Daemon(before=["prlimit", "--nofile=48:48"]) as d:  # an idle daemon has about twenty
             idle = [d.connect() for _ in range(60)]

@@ -1,4 +1,5 @@
 #include "server/http/connection.h"
+#include "server/http/lingering.h"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -152,15 +153,38 @@ TEST(Connection, AClientThatIsGoneIsAFailureAndNoSignal) {
     EXPECT_FALSE(pair.connection.flush());
 }
 
-TEST(Connection, LingeringReadsAwayWhatAClientStillSends) {
-    // More than a socket holds: the client would wait for ever if nobody read it.
+/// What the client receives next; 0 is the end of the connection. Waits.
+ssize_t next_received(int client) {
+    char byte = 0;
+    return ::recv(client, &byte, 1, 0);
+}
+
+TEST(Lingering, ReadsAwayWhatAClientStillSends) {
+    Lingering lingering(60s, 10);
     Pair pair(long_patience);
-    std::jthread client([&] {
-        const std::string body(4 << 20, 'x');
-        EXPECT_EQ(::send(pair.client, body.data(), body.size(), MSG_NOSIGNAL), ssize_t(body.size()));
-        ::shutdown(pair.client, SHUT_WR);
-    });
-    pair.connection.linger(60s);
+    lingering.add(pair.connection.release());
+    EXPECT_EQ(next_received(pair.client), 0);  // sending is shut down
+    // More than a socket holds: the client would wait for ever if nobody read it.
+    const std::string body(4 << 20, 'x');
+    EXPECT_EQ(::send(pair.client, body.data(), body.size(), MSG_NOSIGNAL), ssize_t(body.size()));
+}
+
+TEST(Lingering, ClosesTheOldestWhenThereAreTooMany) {
+    Lingering lingering(60s, 1);
+    Pair oldest(long_patience), newest(long_patience);
+    lingering.add(oldest.connection.release());
+    lingering.add(newest.connection.release());
+    while (::send(oldest.client, "x", 1, MSG_NOSIGNAL) == 1) std::this_thread::yield();  // until it is closed
+    EXPECT_EQ(::send(newest.client, "x", 1, MSG_NOSIGNAL), 1);
+}
+
+TEST(Lingering, ClosesAllAtItsEnd) {
+    Pair pair(long_patience);
+    {
+        Lingering lingering(60s, 10);
+        lingering.add(pair.connection.release());
+    }
+    EXPECT_EQ(::send(pair.client, "x", 1, MSG_NOSIGNAL), -1);
 }
 
 }  // namespace

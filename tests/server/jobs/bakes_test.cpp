@@ -28,6 +28,12 @@ protected:
         return plan;
     }
 
+    void submit_batch(const std::vector<BakePlan>& plans, const std::string& id) {
+        queue.submit_batch(id, "{}", [&](Sql&, const std::function<void(const BakePlan&)>& take) {
+            for (const BakePlan& plan : plans) take(plan);
+        });
+    }
+
     /// Reads a list page by page, one bake a page.
     std::vector<std::string> ids(BakeFilter filter) {
         std::vector<std::string> found;
@@ -50,8 +56,8 @@ protected:
 
 TEST_F(BakesTest, ABatchListsItsBakesOnceAndNewestFirst) {
     queue.submit({bake("a", "one"), bake("b", "two"), bake("c", "one")});
-    queue.submit({bake("b", "two"), bake("d", "one"), bake("b", "two"), bake("a", "one")}, "batch", "{}");
-    queue.submit({bake("e", "one")}, "other", "{}");
+    submit_batch({bake("b", "two"), bake("d", "one"), bake("b", "two"), bake("a", "one")}, "batch");
+    submit_batch({bake("e", "one")}, "other");
     EXPECT_EQ(ids({.batch = "batch"}), (Ids{"d", "b", "a"}));
     EXPECT_EQ(ids({.model = "one", .batch = "batch"}), (Ids{"d", "a"}));
     queue.cancel("d");
@@ -63,7 +69,7 @@ TEST_F(BakesTest, ANameListsABakeOnceThatItWasAskedByForTwoFieldsOrTwice) {
     const std::string both = R"({"hair": {"path": "x", "version": 1}, "environment": {"path": "x", "version": 2}})";
     const std::string first = R"({"hair": {"path": "x", "version": 1}})";
     const std::string other = R"({"hair": {"path": "y", "version": 1}})";
-    queue.submit({bake("a", "one", both), bake("b", "two", other), bake("c", "one", first)}, "batch", "{}");
+    submit_batch({bake("a", "one", both), bake("b", "two", other), bake("c", "one", first)}, "batch");
     queue.submit({bake("b", "two", first), bake("a", "one", first)});
     EXPECT_EQ(ids({.name = "x"}), (Ids{"c", "b", "a"}));
     EXPECT_EQ(ids({.name = "y"}), (Ids{"b"}));

@@ -24,6 +24,12 @@ protected:
         return plan;
     }
 
+    void submit_batch(const std::vector<BakePlan>& plans, const std::string& id) {
+        queue.submit_batch(id, "{}", [&](Sql&, const std::function<void(const BakePlan&)>& take) {
+            for (const BakePlan& plan : plans) take(plan);
+        });
+    }
+
     std::string state(const std::string& table, const std::string& column, const std::string& key) {
         std::string found;
         database.read([&](Sql& sql) {
@@ -199,9 +205,9 @@ TEST_F(QueueTest, ASurvivingWorkerThatNoBakeNeedsIsToBeStopped) {
 }
 
 TEST_F(QueueTest, WhatEndedLongAgoAndWithoutAResultIsForgotten) {
-    queue.submit({bake("failed", {"T1", "I1"})}, "old batch", "{}");
+    submit_batch({bake("failed", {"T1", "I1"})}, "old batch");
     queue.failed(*queue.claim(), {ErrorKind::bad_input, "broken", "hair"});
-    queue.submit({bake("live", {"T2", "I1"}), bake("done", {"T3"})}, "live batch", "{}");
+    submit_batch({bake("live", {"T2", "I1"}), bake("done", {"T3"})}, "live batch");
     const auto count = [&](const std::string& table) {
         std::int64_t rows = 0;
         database.read([&](Sql& sql) { rows = sql.rows("SELECT count(*) FROM " + table).at(0).integer(0); });

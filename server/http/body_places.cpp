@@ -1,0 +1,47 @@
+#include "server/http/body_places.h"
+
+#include <arpa/inet.h>
+
+#include <array>
+#include <utility>
+
+namespace hairbake {
+namespace {
+
+/// The part of the address that one client cannot choose.
+std::string client_of(const std::string& address) {
+    std::array<char, sizeof(in6_addr)> bytes{};
+    if (::inet_pton(AF_INET6, address.c_str(), bytes.data()) != 1) return address;
+    return {bytes.data(), 8};
+}
+
+}  // namespace
+
+BodyPlaces::Place::~Place() {
+    if (places_) places_->free(client_);
+}
+
+BodyPlaces::Place::Place(Place&& other) noexcept
+    : places_(std::exchange(other.places_, nullptr)), client_(std::move(other.client_)) {}
+
+std::optional<BodyPlaces::Place> BodyPlaces::take(const std::string& address) {
+    std::string client = client_of(address);
+    const std::lock_guard lock(mutex_);
+    if (taken_ == places_) return std::nullopt;
+    if (!client.empty()) {
+        const auto found = taken_by_.find(client);
+        if (found != taken_by_.end() && found->second == per_address_) return std::nullopt;
+        ++taken_by_[client];
+    }
+    ++taken_;
+    return Place(*this, std::move(client));
+}
+
+void BodyPlaces::free(const std::string& client) {
+    const std::lock_guard lock(mutex_);
+    --taken_;
+    if (const auto found = taken_by_.find(client); found != taken_by_.end() && --found->second == 0)
+        taken_by_.erase(found);
+}
+
+}  // namespace hairbake
