@@ -13,6 +13,7 @@
 
 #include "server/jobs/bake_records.h"
 #include "server/jobs/job_state.h"
+#include "server/jobs/queue_pause.h"
 #include "server/jobs/stage_plan.h"
 
 namespace hairbake {
@@ -73,7 +74,8 @@ public:
     std::vector<Submitted> submit(const std::vector<BakePlan>& plans, const std::string& batch = {},
                                   const std::string& batch_request = {});
 
-    /// The next stage by priority, then age; blocks until there is one. Nothing after stop().
+    /// The next stage by priority, then age; blocks until there is one and it may be tried (queue_pause.h). Nothing after
+    /// stop().
     std::optional<ClaimedStage> claim();
 
     /// Stores the handle of a worker that survives a restart of the daemon.
@@ -90,6 +92,19 @@ public:
     void died(const ClaimedStage& stage, const std::string& how);
     /// Queues the stage again when a live bake needs it; else cancels it.
     void released(const ClaimedStage& stage);
+    /// The machine was at fault, as told to pause(): like released(), and the attempt does not count.
+    void given_back(const ClaimedStage& stage);
+
+    /// The machine is in trouble: pauses the queue. `stage` is the key of the stage that met the trouble, or empty.
+    void pause(const std::string& stage, const std::string& reason);
+
+    struct Pause {
+        std::string reason;          ///< empty: the queue is not paused
+        std::uint64_t troubles = 0;  ///< since the start
+    };
+    Pause paused();
+    /// The trouble that a queued stage waits for: the last one that it met itself, or that of the queue; or empty.
+    std::string trouble_of(const std::string& stage);
 
     /// Throws Refusal(not_found).
     /// Throws Refusal(conflict) when the bake has ended.
@@ -107,13 +122,17 @@ private:
     Submitted add_bake(Sql& sql, const BakePlan& plan);
     void settle_bake(Sql& sql, const std::string& bake);
     void settle_bakes_of(Sql& sql, const std::string& stage);
+    void fail_stage(Sql& sql, const std::string& stage, const StageError& error);
     void drop_unneeded(Sql& sql, const std::string& stage);
     void release_stage(Sql& sql, const std::string& stage);
     void requeue_stage(Sql& sql, const std::string& stage);
     std::size_t requeue_incomplete(Sql& sql);
     void resume(Sql& sql, const StartedTask& task);
     std::optional<ClaimedStage> claim_queued();
+    std::optional<ClaimedStage> try_to_claim();
+    std::string next_stage(Sql& sql);
     void finish_claim(const ClaimedStage& stage);
+    void end_well(const ClaimedStage& stage);
     void wake();
 
     struct Running {
@@ -130,6 +149,7 @@ private:
     std::uint64_t changes_ = 0;
     std::map<std::string, Running> running_;
     std::deque<ClaimedStage> resumed_;  ///< of surviving workers; to be claimed first
+    QueuePause pause_;
 };
 
 }  // namespace hairbake

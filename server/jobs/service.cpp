@@ -184,6 +184,8 @@ Service::Answer Service::submit(const std::string& body) {
 
 std::string Service::not_ready() {
     if (parts_->queue.stopping()) return "the service is stopping";
+    if (const std::string reason = parts_->queue.paused().reason; !reason.empty())
+        return "the queue is paused and tries again by itself: " + reason;
     try {
         IncomingFile probe(parts_->store.incoming_folder(), 16);
         probe.add(std::as_bytes(std::span("ready", 5)));
@@ -200,6 +202,9 @@ void Service::cancel(const std::string& bake) { parts_->queue.cancel(bake); }
 
 Service::Counts Service::counts() {
     Counts counts;
+    const Queue::Pause pause = parts_->queue.paused();
+    counts.paused = pause.reason;
+    counts.troubles = pause.troubles;
     for (const auto& [state, name] : job_states) counts.stages[state] = counts.bakes[state] = 0;
     const auto add = [](std::map<JobState, std::int64_t>& to, const std::vector<SqlRow>& rows) {
         for (const SqlRow& row : rows)
