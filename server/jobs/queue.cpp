@@ -22,8 +22,8 @@ std::vector<StartedTask> Queue::started_tasks(const std::string& runner) {
     return tasks;
 }
 
-std::size_t Queue::recover(const std::vector<StartedTask>& surviving) {
-    std::size_t lost = 0;
+Queue::Recovered Queue::recover(const std::vector<StartedTask>& surviving) {
+    Recovered recovered;
     const auto survives = [&](const std::string& stage) {
         return std::any_of(surviving.begin(), surviving.end(),
                            [&](const StartedTask& task) { return task.stage == stage; });
@@ -31,12 +31,13 @@ std::size_t Queue::recover(const std::vector<StartedTask>& surviving) {
     database_.write([&](Sql& sql) {
         for (const SqlRow& row : sql.rows("SELECT key FROM stages WHERE state = 'running'"))
             if (!survives(row.text(0))) release_stage(sql, row.text(0));
-        lost = requeue_incomplete(sql);
+        recovered.lost = requeue_incomplete(sql);
+        recovered.planned_again = plan_queued_again(sql);
     });
     database_.read([&](Sql& sql) {
         for (const StartedTask& task : surviving) resume(sql, task);
     });
-    return lost;
+    return recovered;
 }
 
 void Queue::resume(Sql& sql, const StartedTask& task) {

@@ -61,10 +61,14 @@ public:
     /// The running stages whose handles are of the runner of that name.
     std::vector<StartedTask> started_tasks(const std::string& runner);
 
+    struct Recovered {
+        std::size_t lost = 0;           ///< stages that had lost a file
+        std::size_t planned_again = 0;  ///< stages that another version of hairbake had queued
+    };
     /// At boot. Stages of `surviving` workers stay running. Other running stages are queued again, and so are stages
-    /// whose files are not all stored. Inputs that are not stored are forgotten. Returns how many stages had lost a
-    /// file.
-    std::size_t recover(const std::vector<StartedTask>& surviving = {});
+    /// whose files are not all stored. Inputs that are not stored are forgotten. Queued stages of another version of
+    /// hairbake are planned again; their bakes keep their ids.
+    Recovered recover(const std::vector<StartedTask>& surviving = {});
 
     /// Whether the bake is done and `names` (as in BakePlan) are noted with it; then its stages count as used just now.
     bool note_done(Sql& sql, const std::string& bake, const std::string& names);
@@ -74,8 +78,8 @@ public:
     std::vector<Submitted> submit(const std::vector<BakePlan>& plans, const std::string& batch = {},
                                   const std::string& batch_request = {});
 
-    /// The next stage by priority, then age; blocks until there is one and it may be tried (queue_pause.h). Nothing after
-    /// stop().
+    /// The next stage by priority, then age; blocks until there is one and it may be tried (queue_pause.h). A stage that
+    /// was queued by another version of hairbake is planned again first. Nothing after stop().
     std::optional<ClaimedStage> claim();
 
     /// Stores the handle of a worker that survives a restart of the daemon.
@@ -127,6 +131,8 @@ private:
     void release_stage(Sql& sql, const std::string& stage);
     void requeue_stage(Sql& sql, const std::string& stage);
     std::size_t requeue_incomplete(Sql& sql);
+    bool plan_again(Sql& sql, const std::string& stage);
+    std::size_t plan_queued_again(Sql& sql);
     void resume(Sql& sql, const StartedTask& task);
     std::optional<ClaimedStage> claim_queued();
     std::optional<ClaimedStage> try_to_claim();

@@ -77,7 +77,8 @@ std::optional<ClaimedStage> Queue::claim_queued() {
     std::optional<ClaimedStage> claimed;
     const auto held = database_.lock();  // until running_ has the stage, so that cancel() finds it
     database_.write([&](Sql& sql) {
-        const std::string key = next_stage(sql);
+        std::string key = next_stage(sql);
+        while (!key.empty() && plan_again(sql, key)) key = next_stage(sql);
         if (key.empty()) return;
         const SqlRow row = sql.rows("SELECT kind, core_key, request, attempts FROM stages WHERE key = ?", {key}).at(0);
         claimed = {key,

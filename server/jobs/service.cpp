@@ -69,8 +69,10 @@ struct Service::Parts {
         for (const StartedTask& task : surviving) spared.insert(task.folder);
         if (const std::size_t lost = store.recover(spared)) spdlog::warn("{} blobs were lost", lost);
         uploads.recover();
-        if (const std::size_t lost = queue.recover(surviving))
-            spdlog::warn("{} stages lost files; they are baked again", lost);
+        const Queue::Recovered recovered = queue.recover(surviving);
+        if (recovered.lost) spdlog::warn("{} stages lost files; they are baked again", recovered.lost);
+        if (recovered.planned_again)
+            spdlog::info("{} queued stages of another version of hairbake were planned again", recovered.planned_again);
         maintenance = std::make_unique<Maintenance>(database, store, uploads,
                                                     MaintenanceSettings{settings.keep_failed_s, settings.budget_bytes});
         pool = std::make_unique<WorkerPool>(
