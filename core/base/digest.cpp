@@ -59,12 +59,16 @@ std::string Digest::hex() {
 
 std::string digest_of_file(const std::filesystem::path& file) {
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), std::fclose);
-    if (!stream) throw Error(ErrorKind::bad_input, file.string() + ": " + std::generic_category().message(errno));
+    const auto fail = [&](const std::string& what, int error) {
+        throw Error(ErrorKind::bad_input, file.string() + ": " + what + std::generic_category().message(error), {},
+                    error);
+    };
+    if (!stream) fail("", errno);
     Digest digest;
     std::vector<std::byte> buffer(1 << 20);
     while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), stream.get()))
         digest.add(std::span(buffer.data(), n));
-    if (std::ferror(stream.get())) throw Error(ErrorKind::bad_input, file.string() + ": could not be read to its end");
+    if (std::ferror(stream.get())) fail("could not be read to its end: ", errno != 0 ? errno : EIO);
     return digest.hex();
 }
 

@@ -30,7 +30,7 @@ private:
 };
 
 /// Digest of the bytes of a file, as hexadecimal digits.
-/// Throws Error(bad_input) when the file cannot be read.
+/// Throws Error(bad_input), with the system's error number, when the file cannot be read.
 std::string digest_of_file(const std::filesystem::path& file);
 
 }  // namespace hairbake

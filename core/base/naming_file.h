@@ -14,7 +14,7 @@ auto naming_file(const std::string& file, const Body& body) {
         return body();
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::bad_input) throw;
-        throw Error(error.kind(), file + ": " + error.what(), error.field());
+        throw Error(error.kind(), file + ": " + error.what(), error.field(), error.system_error());
     }
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/assert.h"
 #include "core/environment/cube_map.h"
 #include "core/environment/latlong.h"
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -13,6 +14,7 @@
 #include <new>
 #include <sstream>
 #include <stdexcept>
+#include <system_error>
 
 #include "core/environment/image_header.h"
 #include "core/environment/image_kinds.h"
@@ -72,16 +74,19 @@ struct Source {
     int part = 0;
 
     AxisOrder order() const { return behind ? behind->header().order : AxisOrder{}; }
-    [[noreturn]] void fail(const std::string& what) const {
-        throw Error(ErrorKind::bad_input, file.string() + ": " + what);
+    /// `system_error`: as in Error.
+    [[noreturn]] void fail(const std::string& what, int system_error = 0) const {
+        throw Error(ErrorKind::bad_input, file.string() + ": " + what, {}, system_error);
     }
 };
 
 std::string first_bytes(const Source& source) {
     std::ifstream stream(source.file, std::ios::binary);
-    if (!stream) source.fail("cannot be opened");
+    if (!stream) source.fail("cannot be opened: " + std::generic_category().message(errno), errno);
     std::string bytes(image_start_bytes, '\0');
+    errno = 0;
     stream.read(bytes.data(), image_start_bytes);
+    if (stream.bad()) source.fail("cannot be read", errno != 0 ? errno : EIO);
     bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(stream.gcount(), 0)));
     return bytes;
 }
@@ -291,7 +296,8 @@ void read_pixels(const Source& source, const OIIO::ImageSpec& spec, std::array<i
 ImageFile read_image_file(const std::filesystem::path& file, const SizeCheck& check, Progress& progress) try {
     Source source;
     source.file = file;
-    if (!std::filesystem::is_regular_file(file)) source.fail("there is no such file");
+    if (!std::filesystem::is_regular_file(file))
+        source.fail("there is no such file", std::filesystem::exists(file) ? 0 : ENOENT);
     recognise(source);
     OIIO::ImageSpec spec;
     open(source, spec);
@@ -321,7 +327,7 @@ ImageFile read_image_file(const std::filesystem::path& file, const SizeCheck& ch
 } catch (const std::bad_alloc&) {
     throw Error(ErrorKind::out_of_resources, file.string() + ": not enough memory for the image");
 } catch (const std::filesystem::filesystem_error& e) {
-    throw Error(ErrorKind::bad_input, file.string() + ": " + e.code().message());
+    throw Error(ErrorKind::bad_input, file.string() + ": " + e.code().message(), {}, e.code().value());
 }
 
 }  // namespace hairbake

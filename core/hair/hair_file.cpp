@@ -15,6 +15,12 @@
 namespace hairbake {
 namespace {
 
+/// `error` is errno, or 0 where the system did not tell.
+[[noreturn]] void refuse_unreadable(const std::string& name, const std::string& what, int error) {
+    const int known = error != 0 ? error : EIO;
+    throw Error(ErrorKind::bad_input, name + ": " + what + std::generic_category().message(known), {}, known);
+}
+
 /// The reader that recognises the first bytes; null where none does.
 const HairReader* reader_of_bytes(std::span<const std::byte> first) {
     for (const HairReader* reader : hair_readers())
@@ -57,15 +63,21 @@ Groom read_groom(const std::filesystem::path& file, const HairReadSettings& sett
     const std::string name = file.string();
     std::error_code problem;
     const auto status = std::filesystem::status(file, problem);
-    if (!std::filesystem::exists(status)) refuse_hair(name, "there is no such file");
+    if (status.type() == std::filesystem::file_type::none)
+        refuse_unreadable(name, "the file cannot be looked at: ", problem.value());
+    if (!std::filesystem::exists(status))
+        throw Error(ErrorKind::bad_input, name + ": there is no such file", {}, ENOENT);
     if (!std::filesystem::is_regular_file(status)) refuse_hair(name, "this is not a regular file");
     const std::uint64_t size = std::filesystem::file_size(file, problem);
     std::ifstream stream(file, std::ios::binary);
-    if (problem || !stream) refuse_hair(name, "the file cannot be opened: " + std::generic_category().message(errno));
+    if (problem || !stream) refuse_unreadable(name, "the file cannot be opened: ", problem ? problem.value() : errno);
     const auto copy = [&](std::uint64_t offset, void* to, std::size_t n) {
-        if (!stream.seekg(static_cast<std::streamoff>(offset)) ||
-            !stream.read(static_cast<char*>(to), static_cast<std::streamsize>(n)))
-            refuse_hair(name, "the file could not be read to its end");
+        errno = 0;
+        if (stream.seekg(static_cast<std::streamoff>(offset)) &&
+            stream.read(static_cast<char*>(to), static_cast<std::streamsize>(n)))
+            return;
+        if (stream.bad()) refuse_unreadable(name, "the file could not be read to its end: ", errno);
+        refuse_hair(name, "the file could not be read to its end");
     };
     try {
         return read({name, size, copy}, settings);
@@ -92,7 +104,7 @@ HairModel read_hair(std::span<const std::byte> bytes, const std::string& name) {
 
 bool is_hair_file(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
-    if (!stream) refuse_hair(file.string(), std::generic_category().message(errno));
+    if (!stream) refuse_unreadable(file.string(), "", errno);
     std::array<std::byte, recognition_bytes> bytes{};
     stream.read(reinterpret_cast<char*>(bytes.data()), bytes.size());
     const auto count = static_cast<std::size_t>(stream.gcount());

@@ -191,12 +191,16 @@ TriangleMesh read_mesh(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     std::error_code error;
     const std::uintmax_t size = std::filesystem::file_size(file, error);
-    if (error || !stream)
-        throw Error(ErrorKind::bad_input,
-                    file.string() + ": " + (error ? error.message() : std::generic_category().message(errno)));
+    const auto refuse_unreadable = [&](int number) {
+        const int known = number != 0 ? number : EIO;
+        throw Error(ErrorKind::bad_input, file.string() + ": " + std::generic_category().message(known), {}, known);
+    };
+    if (error || !stream) refuse_unreadable(error ? error.value() : errno);
     if (size > kMostBytes) refuse_size(file.string(), size);
     std::string text(size, '\0');
+    errno = 0;
     stream.read(text.data(), static_cast<std::streamsize>(size));
+    if (stream.bad()) refuse_unreadable(errno);
     if (static_cast<std::uintmax_t>(stream.gcount()) != size)
         throw Error(ErrorKind::bad_input, file.string() + " ended after " + std::to_string(stream.gcount()) + " of " +
                                               std::to_string(size) + " bytes");

@@ -14,7 +14,7 @@ namespace hairbake {
 void throw_system_error(const std::filesystem::path& file, int error) {
     const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG || error == ENOMEM || error == EMFILE;
     throw Error(full ? ErrorKind::out_of_resources : ErrorKind::bad_input,
-                file.string() + " cannot be written: " + std::generic_category().message(error));
+                file.string() + " cannot be written: " + std::generic_category().message(error), {}, error);
 }
 
 FileSink::FileSink(const std::filesystem::path& file)

@@ -25,7 +25,7 @@ struct WrittenFile {
 };
 
 /// Writes one new file. Not thread-safe. A full disk, a quota or a size limit is Error(out_of_resources); any other
-/// failure Error(bad_input) with the system's words.
+/// failure Error(bad_input) with the system's words. Both have the system's error number.
 class FileSink {
 public:
     explicit FileSink(const std::filesystem::path& file);
@@ -60,7 +60,7 @@ void discard_part(const std::filesystem::path& file) noexcept;
 /// Throws as FileSink does, and std::filesystem::filesystem_error where the name cannot be taken.
 void write_whole_file(const std::filesystem::path& file, std::span<const std::byte> bytes);
 
-/// Error for the system's errno about `file`: its kind separates a full disk from other failures.
+/// Error for the system's errno `error` about `file`: its kind separates a full disk from other failures.
 [[noreturn]] void throw_system_error(const std::filesystem::path& file, int error);
 
 }  // namespace hairbake

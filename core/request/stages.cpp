@@ -74,6 +74,12 @@ std::string settings_text(const Stage& stage, const BakeRequest& request) {
 
 std::span<const Stage> stages() { return table; }
 
+std::string versions_text() {
+    std::string text;
+    for (const Stage& stage : table) text += std::string(stage.name) + " " + std::to_string(stage.algorithm) + ", ";
+    return text + "output format " + std::to_string(output_format);
+}
+
 const Stage* find_stage(std::string_view name) {
     for (const Stage& stage : table)
         if (stage.name == name) return &stage;

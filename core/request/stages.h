@@ -45,6 +45,10 @@ std::span<const Stage> stages();
 /// The outputs in which the stage writes files, as the request's schema lists them (outputs, x-stages).
 const std::vector<std::string>& formats_of(const Stage& stage);
 
+/// The numbers on which keys depend, for people: "transmittance 2, irradiance 2, output format 1". Programs of which this
+/// text differs make other keys.
+std::string versions_text();
+
 /// Null where there is no stage of this name.
 const Stage* find_stage(std::string_view name);
 

@@ -6,6 +6,8 @@
 #include <prometheus/registry.h>
 #include <prometheus/text_serializer.h>
 
+#include <mutex>
+
 namespace hairbake {
 namespace {
 
@@ -36,7 +38,21 @@ struct Metrics::State {
     Gauges& bakes = gauges(registry, "hairbake_bakes", "Bakes by state");
     Gauges& stages = gauges(registry, "hairbake_stages", "Stages by state");
     prometheus::Gauge& blobs = gauges(registry, "hairbake_store_blobs", "Blobs in the store").Add({});
+    Gauges& paused = gauges(registry, "hairbake_queue_paused",
+                            "1 while the queue is paused because the machine is in trouble, with the reason");
+    prometheus::Gauge* pause = nullptr;  ///< the one member of `paused`
+    prometheus::Gauge& troubles =
+        gauges(registry, "hairbake_machine_troubles", "How often the machine kept a stage from running since the start")
+            .Add({});
     prometheus::Gauge& bytes = gauges(registry, "hairbake_store_bytes", "Bytes of all blobs").Add({});
+    std::mutex mutex;  ///< of text()
+
+    /// The reason is a label; a reason of the past is removed.
+    void set_pause(const std::string& reason) {
+        if (pause) paused.Remove(pause);
+        pause = &paused.Add(reason.empty() ? prometheus::Labels{} : prometheus::Labels{{"reason", reason}});
+        pause->Set(reason.empty() ? 0 : 1);
+    }
 };
 
 Metrics::Metrics() : state_(std::make_unique<State>()) {}
@@ -48,6 +64,9 @@ void Metrics::count(const std::string& method, int status, double seconds) {
 }
 
 std::string Metrics::text(const Service::Counts& counts) {
+    const std::lock_guard lock(state_->mutex);
+    state_->set_pause(counts.paused);
+    state_->troubles.Set(static_cast<double>(counts.troubles));
     set_states(state_->bakes, counts.bakes);
     set_states(state_->stages, counts.stages);
     state_->blobs.Set(static_cast<double>(counts.blobs));

@@ -49,6 +49,9 @@ StageView stage_view(Queue& queue, const SqlRow& row) {
         view.json["phase"] = progress->phase;
         if (view.fraction > 0.05) view.seconds_left = (now() - row.number(4)) * (1 - view.fraction) / view.fraction;
     }
+    if (state == JobState::queued)
+        if (std::string trouble = queue.trouble_of(row.text(1)); !trouble.empty())
+            view.json["trouble"] = std::move(trouble);
     view.json["fraction"] = std::round(view.fraction * 1000) / 1000;
     return view;
 }

@@ -9,6 +9,7 @@
 #include "server/jobs/task_follower.h"
 #include "server/jobs/time_text.h"
 #include "server/jobs/work_folder.h"
+#include "server/jobs/worker_trial.h"
 #include "server/store/blob_store.h"
 #include "server/store/database.h"
 #include "server/store/refusal.h"
@@ -36,11 +37,20 @@ Json entry(const std::string& kind, const SqlRow& row) {
     throw Refusal(Refused::not_found, "there is no " + kind + " " + digest.substr(0, 64));
 }
 
+[[noreturn]] void refuse_for_now(const std::string& reason) {
+    throw Refusal(Refused::busy, "the file cannot be read now: " + reason);
+}
+
 /// Throws what the failed inspection means to the client. A file that kills every worker is the file's fault.
 [[noreturn]] void refuse_outcome(const Outcome& outcome) {
+    if (outcome.end == Outcome::End::trouble) refuse_for_now(outcome.message);
     const bool is_ours = outcome.kind == ErrorKind::out_of_resources || outcome.kind == ErrorKind::internal;
     if (outcome.end == Outcome::End::failed && is_ours) throw Error(outcome.kind, outcome.message);
     throw Refusal(Refused::unprocessable, outcome.message, "sha256");
+}
+
+std::string digest_of_thumbnail(const fs::path& picture) try { return digest_of_file(picture); } catch (const Error&) {
+    refuse_for_now("the thumbnail that the worker made is gone");
 }
 
 }  // namespace
@@ -76,10 +86,12 @@ void Catalog::inspect(const std::string& kind, const std::string& digest) {
                                                            {"names", {{path, "sha256:" + digest}}}}
                                                           .dump());
     Outcome outcome = run(folder);
-    if (outcome.end == Outcome::End::died) outcome = run(folder);  // the machine may have killed it, not the file
+    if (outcome.end == Outcome::End::died) outcome = run(folder);  // a chance may have killed it, not the file
+    if (outcome.end == Outcome::End::died)
+        outcome = explain_death(std::move(outcome), runner_, store_.incoming_folder(), [] { return Wish::go_on; });
     if (outcome.end != Outcome::End::done) refuse_outcome(outcome);
     const fs::path picture = folder.path() / "thumbnail.png";
-    const std::string thumbnail = digest_of_file(picture);
+    const std::string thumbnail = digest_of_thumbnail(picture);
     const auto held = database_.lock();  // no eviction may come between blob and row
     store_.adopt(picture, thumbnail);
     database_.write([&](Sql& sql) {
@@ -88,9 +100,11 @@ void Catalog::inspect(const std::string& kind, const std::string& digest) {
     });
 }
 
-Outcome Catalog::run(const WorkFolder& folder) {
+Outcome Catalog::run(const WorkFolder& folder) try {
     return follow_task(
         runner_, runner_.start(folder.path()), folder, [] { return Wish::go_on; }, [](std::string_view, double) {});
+} catch (const Error& error) {
+    refuse_for_now(error.what());
 }
 
 std::string Catalog::get(const std::string& kind, const std::string& digest) {

@@ -24,6 +24,7 @@ public:
     };
     /// Has a worker read the blob, unless that was done before. The caller has checked the blob's digest.
     /// Throws Refusal(unprocessable) with the worker's message when the file cannot be read.
+    /// Throws Refusal(busy) while the machine is in trouble: the file is not at fault.
     /// Throws Error for other failures.
     Added add(const std::string& kind, const std::string& digest);
     std::string get(const std::string& kind, const std::string& digest);

@@ -6,12 +6,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <system_error>
 #include <vector>
 
 #include "core/base/error.h"
@@ -64,7 +66,8 @@ pid_t spawn(const RunnerSettings& settings, const fs::path& work_folder) {
     const int error =
         ::posix_spawn(&child, settings.program.c_str(), &spawn.actions, &spawn.attributes, arguments.data(), environ);
     if (error != 0)
-        throw Error(ErrorKind::internal, settings.program.string() + " cannot be started: " + std::strerror(error));
+        throw Error(ErrorKind::internal,
+                    "the worker program cannot be started: " + std::generic_category().message(error), {}, error);
     return child;
 }
 
@@ -115,7 +118,8 @@ public:
 
     void check_ready() override {
         if (::access(settings_.program.c_str(), X_OK) != 0)
-            throw Error(ErrorKind::internal, "the worker program cannot be started");
+            throw Error(ErrorKind::internal,
+                        "the worker program cannot be started: " + std::generic_category().message(errno), {}, errno);
     }
 
     bool survives_restart() const override { return false; }

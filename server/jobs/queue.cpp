@@ -7,7 +7,6 @@
 #include "server/store/refusal.h"
 
 namespace hairbake {
-
 Queue::Queue(Database& database, BlobStore& store, int max_crashes)
     : database_(database), store_(store), max_crashes_(max_crashes) {}
 
@@ -23,8 +22,8 @@ std::vector<StartedTask> Queue::started_tasks(const std::string& runner) {
     return tasks;
 }
 
-std::size_t Queue::recover(const std::vector<StartedTask>& surviving) {
-    std::size_t lost = 0;
+Queue::Recovered Queue::recover(const std::vector<StartedTask>& surviving) {
+    Recovered recovered;
     const auto survives = [&](const std::string& stage) {
         return std::any_of(surviving.begin(), surviving.end(),
                            [&](const StartedTask& task) { return task.stage == stage; });
@@ -32,12 +31,13 @@ std::size_t Queue::recover(const std::vector<StartedTask>& surviving) {
     database_.write([&](Sql& sql) {
         for (const SqlRow& row : sql.rows("SELECT key FROM stages WHERE state = 'running'"))
             if (!survives(row.text(0))) release_stage(sql, row.text(0));
-        lost = requeue_incomplete(sql);
+        recovered.lost = requeue_incomplete(sql);
+        recovered.planned_again = plan_queued_again(sql);
     });
     database_.read([&](Sql& sql) {
         for (const StartedTask& task : surviving) resume(sql, task);
     });
-    return lost;
+    return recovered;
 }
 
 void Queue::resume(Sql& sql, const StartedTask& task) {
@@ -152,53 +152,6 @@ void Queue::wake() {
     changed_.notify_all();
 }
 
-std::optional<ClaimedStage> Queue::claim() {
-    while (!stopping_) {
-        std::uint64_t seen = 0;
-        {
-            const std::lock_guard lock(mutex_);
-            seen = changes_;
-            if (!resumed_.empty()) {
-                ClaimedStage resumed = std::move(resumed_.front());
-                resumed_.pop_front();
-                return resumed;
-            }
-        }
-        if (std::optional<ClaimedStage> claimed = claim_queued()) return claimed;
-        std::unique_lock lock(mutex_);
-        changed_.wait(lock, [&] { return stopping_ || changes_ != seen; });
-    }
-    return std::nullopt;
-}
-
-/// Nothing when no stage is queued.
-std::optional<ClaimedStage> Queue::claim_queued() {
-    std::optional<ClaimedStage> claimed;
-    const auto held = database_.lock();  // until running_ has the stage, so that cancel() finds it
-    database_.write([&](Sql& sql) {
-        const auto rows = sql.rows(
-            "SELECT key, kind, core_key, request, attempts FROM stages WHERE state = 'queued' "
-            "ORDER BY priority DESC, seq LIMIT 1");
-        if (rows.empty()) return;
-        claimed = {rows[0].text(0),
-                   rows[0].text(1),
-                   rows[0].text(2),
-                   rows[0].text(3),
-                   static_cast<int>(rows[0].integer(4)) + 1,
-                   std::make_shared<std::atomic<bool>>(false)};
-        sql.run(
-            "UPDATE stages SET state = 'running', attempts = attempts + 1, started = ?, runner = NULL, handle = NULL, "
-            "work_folder = NULL WHERE key = ?",
-            {now(), claimed->key});
-        settle_bakes_of(sql, claimed->key);
-    });
-    if (!claimed) return std::nullopt;
-    const std::lock_guard lock(mutex_);
-    running_[claimed->key] = {claimed->cancel, {}};
-    if (stopping_) *claimed->cancel = true;  // stop() did not see this one
-    return claimed;
-}
-
 void Queue::started(const StartedTask& task, const std::string& runner) {
     database_.write([&](Sql& sql) {
         sql.run("UPDATE stages SET runner = ?, handle = ?, work_folder = ? WHERE key = ?",
@@ -218,14 +171,6 @@ std::optional<StageProgress> Queue::progress_of(const std::string& key) {
     return running == running_.end() ? std::nullopt : std::optional(running->second.progress);
 }
 
-void Queue::finish_claim(const ClaimedStage& stage) {
-    {
-        const std::lock_guard lock(mutex_);
-        running_.erase(stage.key);
-    }
-    wake();
-}
-
 void Queue::done(const ClaimedStage& stage, const std::vector<StageFile>& files, const std::string& manifest) {
     database_.write([&](Sql& sql) {
         sql.run("DELETE FROM stage_files WHERE stage = ?", {stage.key});
@@ -236,34 +181,47 @@ void Queue::done(const ClaimedStage& stage, const std::vector<StageFile>& files,
                 {manifest, now(), stage.key});
         settle_bakes_of(sql, stage.key);
     });
-    finish_claim(stage);
+    end_well(stage);
+}
+
+void Queue::fail_stage(Sql& sql, const std::string& stage, const StageError& error) {
+    sql.run("UPDATE stages SET state = 'failed', error = ?, finished = ? WHERE key = ?",
+            {error_json(error), now(), stage});
+    settle_bakes_of(sql, stage);
 }
 
 void Queue::failed(const ClaimedStage& stage, const StageError& error) {
-    database_.write([&](Sql& sql) {
-        sql.run("UPDATE stages SET state = 'failed', error = ?, finished = ? WHERE key = ?",
-                {error_json(error), now(), stage.key});
-        settle_bakes_of(sql, stage.key);
-    });
-    finish_claim(stage);
+    database_.write([&](Sql& sql) { fail_stage(sql, stage.key, error); });
+    end_well(stage);
 }
 
 void Queue::died(const ClaimedStage& stage, const std::string& how) {
-    bool again = true;
     database_.write([&](Sql& sql) {
         sql.run("UPDATE stages SET crashes = crashes + 1 WHERE key = ?", {stage.key});
         const auto crashes = sql.rows("SELECT crashes FROM stages WHERE key = ?", {stage.key}).at(0).integer(0);
-        again = crashes <= max_crashes_;
+        if (crashes <= max_crashes_)
+            release_stage(sql, stage.key);
+        else
+            fail_stage(sql, stage.key,
+                       {ErrorKind::internal, how + " (it was started " + std::to_string(crashes) + " times)", {}});
     });
-    if (again)
-        released(stage);
-    else
-        failed(stage,
-               {ErrorKind::internal, how + " (it was started " + std::to_string(max_crashes_ + 1) + " times)", {}});
+    end_well(stage);
 }
 
 void Queue::released(const ClaimedStage& stage) {
     database_.write([&](Sql& sql) { release_stage(sql, stage.key); });
+    {
+        const std::lock_guard lock(mutex_);
+        pause_.ended(stage.key, std::chrono::steady_clock::now());
+    }
+    finish_claim(stage);
+}
+
+void Queue::given_back(const ClaimedStage& stage) {
+    database_.write([&](Sql& sql) {
+        sql.run("UPDATE stages SET attempts = max(attempts - 1, 0) WHERE key = ?", {stage.key});
+        release_stage(sql, stage.key);
+    });
     finish_claim(stage);
 }
 

@@ -14,6 +14,7 @@
 
 #include "server/jobs/bake_records.h"
 #include "server/jobs/job_state.h"
+#include "server/jobs/queue_pause.h"
 #include "server/jobs/stage_plan.h"
 
 namespace hairbake {
@@ -61,10 +62,14 @@ public:
     /// The running stages whose handles are of the runner of that name.
     std::vector<StartedTask> started_tasks(const std::string& runner);
 
+    struct Recovered {
+        std::size_t lost = 0;           ///< stages that had lost a file
+        std::size_t planned_again = 0;  ///< stages that another version of hairbake had queued
+    };
     /// At boot. Stages of `surviving` workers stay running. Other running stages are queued again, and so are stages
-    /// whose files are not all stored. Inputs that are not stored are forgotten. Returns how many stages had lost a
-    /// file.
-    std::size_t recover(const std::vector<StartedTask>& surviving = {});
+    /// whose files are not all stored. Inputs that are not stored are forgotten. Queued stages of another version of
+    /// hairbake are planned again; their bakes keep their ids.
+    Recovered recover(const std::vector<StartedTask>& surviving = {});
 
     /// Whether the bake is done and `names` (as in BakePlan) are noted with it; then its stages count as used just now.
     bool note_done(Sql& sql, const std::string& bake, const std::string& names);
@@ -78,7 +83,8 @@ public:
     /// throws undoes everything. `request` is JSON.
     void submit_batch(const std::string& id, const std::string& request, const EachPlan& each_plan);
 
-    /// The next stage by priority, then age; blocks until there is one. Nothing after stop().
+    /// The next stage by priority, then age; blocks until there is one and it may be tried (queue_pause.h). A stage that
+    /// was queued by another version of hairbake is planned again first. Nothing after stop().
     std::optional<ClaimedStage> claim();
 
     /// Stores the handle of a worker that survives a restart of the daemon.
@@ -95,6 +101,19 @@ public:
     void died(const ClaimedStage& stage, const std::string& how);
     /// Queues the stage again when a live bake needs it; else cancels it.
     void released(const ClaimedStage& stage);
+    /// The machine was at fault, as told to pause(): like released(), and the attempt does not count.
+    void given_back(const ClaimedStage& stage);
+
+    /// The machine is in trouble: pauses the queue. `stage` is the key of the stage that met the trouble, or empty.
+    void pause(const std::string& stage, const std::string& reason);
+
+    struct Pause {
+        std::string reason;          ///< empty: the queue is not paused
+        std::uint64_t troubles = 0;  ///< since the start
+    };
+    Pause paused();
+    /// The trouble that a queued stage waits for: the last one that it met itself, or that of the queue; or empty.
+    std::string trouble_of(const std::string& stage);
 
     /// Throws Refusal(not_found).
     /// Throws Refusal(conflict) when the bake has ended.
@@ -112,13 +131,19 @@ private:
     Submitted add_bake(Sql& sql, const BakePlan& plan);
     void settle_bake(Sql& sql, const std::string& bake);
     void settle_bakes_of(Sql& sql, const std::string& stage);
+    void fail_stage(Sql& sql, const std::string& stage, const StageError& error);
     void drop_unneeded(Sql& sql, const std::string& stage);
     void release_stage(Sql& sql, const std::string& stage);
     void requeue_stage(Sql& sql, const std::string& stage);
     std::size_t requeue_incomplete(Sql& sql);
+    bool plan_again(Sql& sql, const std::string& stage);
+    std::size_t plan_queued_again(Sql& sql);
     void resume(Sql& sql, const StartedTask& task);
     std::optional<ClaimedStage> claim_queued();
+    std::optional<ClaimedStage> try_to_claim();
+    std::string next_stage(Sql& sql);
     void finish_claim(const ClaimedStage& stage);
+    void end_well(const ClaimedStage& stage);
     void wake();
 
     struct Running {
@@ -135,6 +160,7 @@ private:
     std::uint64_t changes_ = 0;
     std::map<std::string, Running> running_;
     std::deque<ClaimedStage> resumed_;  ///< of surviving workers; to be claimed first
+    QueuePause pause_;
 };
 
 }  // namespace hairbake

@@ -37,7 +37,7 @@ public:
     virtual ~Runner() = default;
 
     /// Starts hairbake-worker on a work folder and returns a handle, a short text that names the run.
-    /// Throws Error when the worker cannot be started.
+    /// Throws Error when the worker cannot be started now: the machine is at fault, and never the task.
     virtual std::string start(const std::filesystem::path& work_folder) = 0;
 
     /// Never blocks for long. The handle of an ended worker is forgotten once its end was returned; an unknown handle

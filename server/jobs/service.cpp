@@ -69,8 +69,10 @@ struct Service::Parts {
         for (const StartedTask& task : surviving) spared.insert(task.folder);
         if (const std::size_t lost = store.recover(spared)) spdlog::warn("{} blobs were lost", lost);
         uploads.recover();
-        if (const std::size_t lost = queue.recover(surviving))
-            spdlog::warn("{} stages lost files; they are baked again", lost);
+        const Queue::Recovered recovered = queue.recover(surviving);
+        if (recovered.lost) spdlog::warn("{} stages lost files; they are baked again", recovered.lost);
+        if (recovered.planned_again)
+            spdlog::info("{} queued stages of another version of hairbake were planned again", recovered.planned_again);
         maintenance = std::make_unique<Maintenance>(database, store, uploads,
                                                     MaintenanceSettings{settings.keep_failed_s, settings.budget_bytes});
         pool = std::make_unique<WorkerPool>(
@@ -185,6 +187,8 @@ Service::Answer Service::submit(const std::string& body) {
 
 std::string Service::not_ready() {
     if (parts_->queue.stopping()) return "the service is stopping";
+    if (const std::string reason = parts_->queue.paused().reason; !reason.empty())
+        return "the queue is paused and tries again by itself: " + reason;
     try {
         IncomingFile probe(parts_->store.incoming_folder(), 16);
         probe.add(std::as_bytes(std::span("ready", 5)));
@@ -201,6 +205,9 @@ void Service::cancel(const std::string& bake) { parts_->queue.cancel(bake); }
 
 Service::Counts Service::counts() {
     Counts counts;
+    const Queue::Pause pause = parts_->queue.paused();
+    counts.paused = pause.reason;
+    counts.troubles = pause.troubles;
     for (const auto& [state, name] : job_states) counts.stages[state] = counts.bakes[state] = 0;
     const auto add = [](std::map<JobState, std::int64_t>& to, const std::vector<SqlRow>& rows) {
         for (const SqlRow& row : rows)

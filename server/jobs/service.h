@@ -68,13 +68,16 @@ public:
     void cancel(const std::string& bake);
 
     // ---- health
-    /// Empty when the store and the database can be written and workers can be started; else the reason.
+    /// Empty when the store and the database can be written, workers can be started and the queue is not paused; else the
+    /// reason.
     std::string not_ready();
 
     /// For /metrics.
     struct Counts {
         std::map<JobState, std::int64_t> stages, bakes;
         std::uint64_t blobs = 0, bytes = 0;
+        std::string paused;          ///< why the queue is paused, or empty
+        std::uint64_t troubles = 0;  ///< how often the machine kept a stage from running since the start
     };
     Counts counts();
 

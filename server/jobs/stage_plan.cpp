@@ -4,6 +4,7 @@
 
 #include "core/base/assert.h"
 #include "core/base/digest.h"
+#include "core/base/error.h"
 #include "core/request/request_json.h"
 #include "core/request/stages.h"
 
@@ -76,6 +77,16 @@ BakePlan plan_bake(const BakeRequest& request) {
     plan.environment = digest_in(digests, "environment");
     for (const Stage* stage : stages_of(request)) plan.stages.push_back(plan_stage(*stage, digests, request));
     return plan;
+}
+
+std::optional<StagePlan> plan_stage_again(const std::string& kind, const std::string& request) try {
+    const Stage* const stage = find_stage(kind);
+    if (!stage) return std::nullopt;
+    BakeRequest alone;
+    merge_json(alone, request, "the stage's request");
+    return plan_stage(*stage, digests_of(alone), alone);
+} catch (const Error&) {
+    return std::nullopt;
 }
 
 }  // namespace hairbake

@@ -42,4 +42,8 @@ std::span<const FileField> file_fields();
 std::string bake_id_of(const BakeRequest& request);
 BakePlan plan_bake(const BakeRequest& request);
 
+/// The plan that this version of hairbake makes of a stored stage: `kind` and `request` as in StagePlan. Nothing for a
+/// stage or a request that this version does not know.
+std::optional<StagePlan> plan_stage_again(const std::string& kind, const std::string& request);
+
 }  // namespace hairbake

@@ -1,7 +1,11 @@
 #include "server/jobs/task_follower.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
+#include <system_error>
 #include <thread>
 
 namespace hairbake {
@@ -17,16 +21,25 @@ void sleep_until_next_poll(Clock::duration running) {
     std::this_thread::sleep_for(std::clamp<Clock::duration>(running / 16, 1ms, 25ms));
 }
 
-Outcome outcome_of(const LastWord& word) {
+Outcome outcome_of(const LastWord& word, bool was_stopped) {
     if (!word.error) return {End::done, word.facts, {}, {}, {}};
-    const End end = *word.error == ErrorKind::cancelled ? End::cancelled : End::failed;
+    End end = word.is_trouble ? End::trouble : End::failed;
+    if (*word.error == ErrorKind::cancelled)
+        end = was_stopped ? End::cancelled : End::died;  // somebody else stopped it
     return {end, word.facts, *word.error, word.message, word.field};
 }
 
+/// Why the work folder cannot be used any more: errno, or 0.
+int error_of_folder(const WorkFolder& folder) { return ::access(folder.path().c_str(), W_OK | X_OK) == 0 ? 0 : errno; }
+
+Outcome trouble_with(const std::string& what, int error) {
+    return {End::trouble, "{}", ErrorKind::out_of_resources, what + ": " + std::generic_category().message(error), {}};
+}
+
 /// `was_stopped`: on the caller's wish.
-Outcome conclude(const RunStatus& status, const WorkerWords& words, bool was_stopped) {
+Outcome conclude(const RunStatus& status, const WorkerWords& words, const WorkFolder& folder, bool was_stopped) {
     if (status.state == State::exited && words.last_word() && !words.is_babbling())
-        return outcome_of(*words.last_word());
+        return outcome_of(*words.last_word(), was_stopped);
     if (was_stopped) return {End::cancelled, "{}", ErrorKind::cancelled, {}, {}};
     if (words.is_babbling())
         return {End::died,
@@ -35,6 +48,10 @@ Outcome conclude(const RunStatus& status, const WorkerWords& words, bool was_sto
                 "the worker wrote a line of more than 1 MiB or more than 64 MiB of words",
                 {}};
     if (status.state == State::over_limit) return {End::failed, "{}", ErrorKind::out_of_resources, status.message, {}};
+    if (words.trouble()) return trouble_with("the worker's words cannot be read", words.trouble());
+    if (const int error = error_of_folder(folder)) return trouble_with("the work folder is gone", error);
+    if (!words.has_begun())
+        return {End::trouble, "{}", ErrorKind::internal, status.message + " before it reached its task", {}};
     const std::string without = status.state == State::exited ? " without a result" : "";
     return {End::died, "{}", ErrorKind::internal, status.message + without, {}};
 }
@@ -58,7 +75,7 @@ Outcome follow_task(Runner& runner, const std::string& handle, const WorkFolder&
         if (status.state != State::running) {
             while (words.read_more()) {
             }
-            return conclude(status, words, was_stopped);
+            return conclude(status, words, folder, was_stopped);
         }
         if (words.is_babbling()) runner.stop(handle);
         if (!more) sleep_until_next_poll(Clock::now() - begin);

@@ -16,6 +16,7 @@ struct Outcome {
     enum class End {
         done,       ///< `facts` holds the worker's last word
         failed,     ///< `kind`, `message`, `field` hold the error; another attempt would fail, too
+        trouble,    ///< the machine is at fault, as `message` tells; another attempt may be successful later
         died,       ///< without a last word; `message` tells how
         cancelled,  ///< stopped on the caller's wish
         left        ///< the caller left it: it still runs

@@ -3,10 +3,12 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <system_error>
 
 #include "core/base/assert.h"
 #include "core/base/digest.h"
@@ -16,13 +18,14 @@
 #include "core/request/stages.h"
 #include "server/jobs/queue.h"
 #include "server/jobs/runner.h"
+#include "server/jobs/stage_outcome.h"
 #include "server/jobs/stage_plan.h"
 #include "server/jobs/task_follower.h"
 #include "server/jobs/work_folder.h"
+#include "server/jobs/worker_trial.h"
 #include "server/store/blob_store.h"
 #include "server/store/database.h"
 #include "server/store/eviction.h"
-#include "server/store/refusal.h"
 
 namespace hairbake {
 namespace fs = std::filesystem;
@@ -49,6 +52,27 @@ std::vector<Phase> phases_of(const ClaimedStage& stage) {
     BakeRequest request;
     merge_json(request, stage.request, "the stage's request");
     return planned_phases(std::span(&known, 1), request);
+}
+
+std::vector<std::string> digests_of(const ClaimedStage& stage) {
+    std::vector<std::string> digests;
+    for (const auto& [field, digest] : files_of(Json::parse(stage.request))) digests.push_back(digest);
+    return digests;
+}
+
+/// A missing file in a folder that is there has not its digest.
+/// Throws Error with the system's error number when the file cannot be read.
+bool has_its_digest(const fs::path& file, const std::string& digest) try {
+    return digest_of_file(file) == digest;
+} catch (const Error& error) {
+    if (error.system_error() == ENOENT && fs::is_directory(file.parent_path())) return false;
+    throw;
+}
+
+/// Clients see the message; they need not know where the store is.
+void hide(std::string& message, const std::string& folder) {
+    for (std::size_t at = 0; (at = message.find(folder)) != std::string::npos;)
+        message.replace(at, folder.size(), "the store");
 }
 
 std::string log_text(const Outcome& outcome) {
@@ -79,39 +103,54 @@ void WorkerPool::work() {
             const std::optional<ClaimedStage> stage = queue_.claim();
             if (!stage) return;
             run_to_the_end(*stage);
+            remove_leftovers();
             evict(database_, store_, settings_.budget);
         } catch (const std::exception& error) {  // the database cannot be written
             spdlog::error("a thread of the worker pool: {}", error.what());
-            std::this_thread::sleep_for(retry_after);
-            if (queue_.stopping()) return;
+            queue_.pause("", error.what());
         }
 }
 
 /// Runs the stage and records how it ended, retrying while the database cannot be written. A stage that a stop of the
 /// daemon leaves `running` is found at the next start.
 void WorkerPool::run_to_the_end(const ClaimedStage& stage) {
-    StageError failure;
-    bool run_again = false;
+    Outcome outcome;
     try {
-        return run(stage);
-    } catch (const Refusal& refusal) {  // memory or descriptors are short
-        failure = {ErrorKind::out_of_resources, refusal.what(), ""};
-        run_again = refusal.why() == Refused::busy;
-    } catch (const Error& error) {
-        const bool has_own_kind = error.kind() == ErrorKind::out_of_resources || error.kind() == ErrorKind::bad_input;
-        failure = {has_own_kind ? error.kind() : ErrorKind::internal, error.what(), error.field()};
-    } catch (const std::exception& error) {
-        failure = {ErrorKind::internal, error.what(), ""};
+        outcome = run(stage);
+    } catch (...) {
+        outcome = outcome_of_exception();
+        hide(outcome.message, store_.incoming_folder().parent_path().string());
     }
-    while (!queue_.stopping()) try {
-            if (!run_again) return queue_.failed(stage, failure);
-            spdlog::warn("stage {} starts again: {}", stage.key.substr(0, 12), failure.message);
-            std::this_thread::sleep_for(retry_after);
-            return queue_.released(stage);
+    if (outcome.end == End::died || (outcome.end == End::failed && outcome.kind == ErrorKind::internal))
+        outcome = explain_death(std::move(outcome), runner_, store_.incoming_folder(),
+                                [&] { return queue_.stopping() || *stage.cancel ? Wish::stop : Wish::go_on; });
+    spdlog::info("stage {} {} attempt {}: {}", stage.kind, stage.key.substr(0, 12), stage.attempt, log_text(outcome));
+    if (outcome.end == End::trouble) queue_.pause(stage.key, outcome.message);
+    for (;;) try {
+            return record(stage, outcome);
         } catch (const std::exception& error) {
             spdlog::error("the end of stage {} cannot be recorded: {}", stage.key.substr(0, 12), error.what());
+            queue_.pause("", error.what());
+            if (queue_.stopping()) return;
             std::this_thread::sleep_for(retry_after);
         }
+}
+
+/// A stage that is done was recorded with its files.
+void WorkerPool::record(const ClaimedStage& stage, const Outcome& outcome) {
+    switch (outcome.end) {
+        case End::failed:
+            return queue_.failed(stage, {outcome.kind, outcome.message, outcome.field});
+        case End::died:
+            return queue_.died(stage, outcome.message);
+        case End::trouble:
+            return queue_.given_back(stage);
+        case End::cancelled:
+            return queue_.released(stage);
+        case End::done:
+        case End::left:
+            return;
+    }
 }
 
 /// The task as server/worker/task.h describes it: the stage's request with the paths of the blobs.
@@ -163,26 +202,59 @@ Outcome WorkerPool::run_worker(const ClaimedStage& stage, WorkFolder& folder) {
     return outcome;
 }
 
-void WorkerPool::run(const ClaimedStage& stage) {
+/// Runs the stage's worker and stores its result.
+/// Throws what outcome_of_exception() takes.
+Outcome WorkerPool::run(const ClaimedStage& stage) {
+    struct Leftover {  // ends after `folder`
+        WorkerPool& pool;
+        fs::path path{};
+        ~Leftover() { pool.note_leftover(path); }
+    } leftover{*this};
     auto folder = stage.started ? std::make_unique<WorkFolder>(store_.incoming_folder() / stage.started->folder)
                                 : std::make_unique<WorkFolder>(store_.incoming_folder(), task_for(stage));
-    const Outcome outcome = run_worker(stage, *folder);
-    spdlog::info("stage {} {} attempt {}: {}", stage.kind, stage.key.substr(0, 12), stage.attempt, log_text(outcome));
-    if (outcome.end == End::done) return store_result(stage, std::move(folder));
+    leftover.path = folder->path();
+    Outcome outcome = run_worker(stage, *folder);
+    if (outcome.end == End::done) {
+        store_result(stage, std::move(folder));
+        return outcome;
+    }
+    if (outcome.end == End::left) {
+        leftover.path.clear();
+        return outcome;
+    }
     folder.reset();  // first: on a full disk the database may need its space
-    if (outcome.end == End::failed)
-        queue_.failed(stage, {outcome.kind, outcome.message, outcome.field});
-    else if (outcome.end == End::died)
-        queue_.died(stage, outcome.message);
-    else if (outcome.end == End::cancelled)
-        queue_.released(stage);
+    std::vector<std::string> suspects = digests_of(stage);
+    if (outcome.end == End::trouble)
+        std::erase_if(suspects, [&](const std::string& digest) { return fs::exists(store_.path_of(digest)); });
+    const bool of_input = outcome.end == End::failed && outcome.kind == ErrorKind::bad_input;
+    if (of_input || outcome.end == End::trouble) remove_spoiled_inputs(suspects);
+    return outcome;
 }
 
-/// Forgets inputs whose stored bytes do not have their digest.
+/// Notes a work folder that is still there.
+void WorkerPool::note_leftover(const fs::path& folder) {
+    std::error_code error;
+    if (folder.empty() || !fs::exists(folder, error)) return;
+    const std::lock_guard lock(mutex_);
+    leftovers_.push_back(folder);
+}
+
+/// Tries again to remove work folders that were left when the store could not be written.
+void WorkerPool::remove_leftovers() {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(leftovers_, [](const fs::path& folder) {
+        std::error_code error;
+        fs::remove_all(folder, error);
+        return !error;
+    });
+}
+
+/// Forgets inputs that are missing or whose stored bytes do not have their digest.
 /// Throws Error(bad_input) when there is one.
+/// Throws Error with the system's error number when one cannot be read now.
 void WorkerPool::remove_spoiled_inputs(const std::vector<std::string>& digests) {
     for (const std::string& digest : digests)
-        if (digest_of_file(store_.path_of(digest)) != digest) {
+        if (!has_its_digest(store_.path_of(digest), digest)) {
             store_.lose(digest, [&](Sql& sql) { queue_.blob_lost(sql, digest); });  // and the facts read from it
             throw Error(ErrorKind::bad_input,
                         "the stored bytes of sha256:" + digest + " were spoiled; send them again");
@@ -190,25 +262,25 @@ void WorkerPool::remove_spoiled_inputs(const std::vector<std::string>& digests) 
 }
 
 /// The text of the result's manifest.
-/// Throws Error when it is missing, no JSON, or of another stage key: then the worker read other bytes than the request
-/// names, or is of another version.
+/// Throws WrongResult when it is missing, no JSON, or of another stage key.
+/// Throws Error with the system's error number when the work folder is gone or the file cannot be opened.
+/// Throws Error(bad_input) when it is of another stage key because an input was spoiled.
 std::string WorkerPool::checked_manifest(const ClaimedStage& stage, const fs::path& folder) {
-    std::ifstream stream(folder / "manifest.json", std::ios::binary);
+    const fs::path file = folder / "manifest.json";
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream && !(errno == ENOENT && fs::is_directory(folder.parent_path())))
+        throw Error(ErrorKind::internal, file.string() + ": " + std::generic_category().message(errno), {}, errno);
     std::string text(longest_manifest + 1, '\0');
     stream.read(text.data(), static_cast<std::streamsize>(text.size()));
     text.resize(static_cast<std::size_t>(stream.gcount()));
     if (text.size() > longest_manifest || nested_deeper_than(text, deepest_json))
-        throw Error(ErrorKind::internal, "the worker's manifest is longer than " + std::to_string(longest_manifest) +
-                                             " bytes, or nested deeper than " + std::to_string(deepest_json) +
-                                             " levels");
+        throw WrongResult("the worker's manifest is longer than " + std::to_string(longest_manifest) +
+                          " bytes, or nested deeper than " + std::to_string(deepest_json) + " levels");
     const Json manifest = Json::parse(text, nullptr, false);
-    if (!manifest.is_object())
-        throw Error(ErrorKind::internal, "the worker reported success, but its manifest is missing or no JSON");
+    if (!manifest.is_object()) throw WrongResult("the worker reported success, but its manifest is missing or no JSON");
     if (manifest.at("stages").at(stage.kind).at("key") != stage.core_key) {
-        std::vector<std::string> digests;
-        for (const auto& [field, digest] : files_of(Json::parse(stage.request))) digests.push_back(digest);
-        remove_spoiled_inputs(digests);
-        throw Error(ErrorKind::internal, "the worker made another key than the daemon: they are not of one version");
+        remove_spoiled_inputs(digests_of(stage));
+        throw WrongResult("the worker made another key than the daemon");
     }
     return text;
 }
@@ -221,8 +293,8 @@ void WorkerPool::store_result(const ClaimedStage& stage, std::unique_ptr<WorkFol
     std::vector<StageFile> files;
     for (const Json& entry : described.at("files")) {
         const std::string name = entry.at("name").get<std::string>(), digest = entry.at("sha256").get<std::string>();
-        if (name.find('/') != std::string::npos || digest_of_file(folder / name) != digest)
-            throw Error(ErrorKind::internal, "the worker's file " + name + " is not as its manifest describes it");
+        if (name.find('/') != std::string::npos || !has_its_digest(folder / name, digest))
+            throw WrongResult("the worker's file " + name + " is not as its manifest describes it");
         files.push_back({name, digest, entry.at("bytes").get<std::uint64_t>()});
     }
     const auto held = database_.lock();  // no eviction may come between the blobs and the rows that refer to them

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -36,12 +37,15 @@ public:
 private:
     void work();
     void run_to_the_end(const ClaimedStage& stage);
-    void run(const ClaimedStage& stage);
+    Outcome run(const ClaimedStage& stage);
+    void record(const ClaimedStage& stage, const Outcome& outcome);
     Outcome run_worker(const ClaimedStage& stage, WorkFolder& folder);
     std::string start(const ClaimedStage& stage, const WorkFolder& folder);
     std::string task_for(const ClaimedStage& stage);
     void remove_spoiled_inputs(const std::vector<std::string>& digests);
     std::string checked_manifest(const ClaimedStage& stage, const std::filesystem::path& folder);
+    void note_leftover(const std::filesystem::path& folder);
+    void remove_leftovers();
     void store_result(const ClaimedStage& stage, std::unique_ptr<WorkFolder> work);
 
     Queue& queue_;
@@ -49,6 +53,8 @@ private:
     Database& database_;
     BlobStore& store_;
     const WorkerPoolSettings settings_;
+    std::mutex mutex_;
+    std::vector<std::filesystem::path> leftovers_;  ///< work folders that could not be removed; guarded by mutex_
     std::vector<std::jthread> threads_;
 };
 

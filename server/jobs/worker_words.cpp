@@ -33,11 +33,13 @@ WorkerWords::WorkerWords(std::filesystem::path file, OnProgress on_progress)
 bool WorkerWords::read_more() {
     if (is_babbling_) return false;
     if (!descriptor_) descriptor_ = Descriptor(::open(file_.c_str(), O_RDONLY | O_CLOEXEC));
+    trouble_ = descriptor_ ? 0 : errno;
     if (!descriptor_) return false;
     std::string piece(piece_bytes, '\0');
     for (int i = 0; i < pieces_at_once; ++i) {
         const ssize_t count = ::read(descriptor_.get(), piece.data(), piece.size());
         if (count < 0 && errno == EINTR) continue;
+        if (count < 0) trouble_ = errno;
         if (count <= 0) return false;
         total_ += static_cast<std::uint64_t>(count);
         pending_.append(piece, 0, static_cast<std::size_t>(count));
@@ -55,17 +57,22 @@ void WorkerWords::read_line(const std::string& line) {
     if (nested_deeper_than(line, deepest_json)) return;
     const Json words = Json::parse(line, nullptr, false);
     if (!words.is_object()) return;
+    has_begun_ = has_begun_ || words.contains("begin") || words.contains("phase") || words.contains("done");
     if (words.contains("phase")) {
         const auto fraction = words.find("fraction");
         on_progress_(text(words, "phase"),
                      fraction != words.end() && fraction->is_number() ? fraction->get<double>() : 0);
     } else if (words.contains("done")) {
         std::string facts = words["done"].dump();
-        if (facts.size() <= longest_facts) last_word_ = LastWord{std::nullopt, std::move(facts), {}, {}};
+        if (facts.size() > longest_facts) return;
+        last_word_ = LastWord();
+        last_word_->facts = std::move(facts);
     } else if (words.contains("error") && words["error"].is_object()) {
         const Json& error = words["error"];
-        last_word_ = LastWord{find_in(error_kind_names, text(error, "kind")).value_or(ErrorKind::internal), "{}",
-                              text(error, "message"), text(error, "field")};
+        last_word_ = LastWord{.error = find_in(error_kind_names, text(error, "kind")).value_or(ErrorKind::internal),
+                              .is_trouble = error.value("machine", Json()) == true,
+                              .message = text(error, "message"),
+                              .field = text(error, "field")};
     }
 }
 

@@ -14,9 +14,10 @@ namespace hairbake {
 
 /// A worker's last word.
 struct LastWord {
-    std::optional<ErrorKind> error;  ///< nothing: the worker was successful
-    std::string facts = "{}";        ///< JSON: the facts of an inspection
-    std::string message, field;      ///< of the error
+    std::optional<ErrorKind> error;        ///< nothing: the worker was successful
+    bool is_trouble = false;               ///< the machine is at fault, and not the input
+    std::string facts = "{}";              ///< JSON: the facts of an inspection
+    std::string message = {}, field = {};  ///< of the error
 };
 
 /// For one thread. A worker is not believed: lines that are no JSON, unknown words and values of the wrong type are
@@ -34,6 +35,12 @@ public:
     /// The latest last word so far.
     const std::optional<LastWord>& last_word() const { return last_word_; }
 
+    /// Whether the worker has said anything: it reached its task.
+    bool has_begun() const { return has_begun_; }
+
+    /// The system's error number of the last attempt to read more, or 0.
+    int trouble() const { return trouble_; }
+
     /// Whether the worker wrote a line of more than 1 MiB or more than 64 MiB in all. Then nothing more is read.
     bool is_babbling() const { return is_babbling_; }
 
@@ -45,7 +52,8 @@ private:
     Descriptor descriptor_;
     std::string pending_;  ///< the beginning of a line
     std::uint64_t total_ = 0;
-    bool is_babbling_ = false;
+    bool has_begun_ = false, is_babbling_ = false;
+    int trouble_ = 0;
     std::optional<LastWord> last_word_;
 };
 

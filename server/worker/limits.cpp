@@ -6,12 +6,15 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <exception>
 #include <new>
+#include <string_view>
 #include <system_error>
 
 #include "core/base/error.h"
+#include "server/worker/shortage.h"
 
 namespace hairbake {
 namespace {
@@ -21,14 +24,23 @@ namespace {
 void set_limit(__rlimit_resource resource, std::uint64_t value, std::uint64_t grace = 0) {
     if (value == 0) return;
     const rlimit limit{value, value + grace};
-    if (::setrlimit(resource, &limit) != 0) throw Error(ErrorKind::internal, "a limit of the worker cannot be set");
+    if (::setrlimit(resource, &limit) != 0)
+        throw Error(ErrorKind::internal, "a limit of the worker cannot be set", {}, errno);
 }
 
-void say_out_of_memory() {
-    static constexpr char words[] =
-        "\n{\"error\":{\"kind\":\"out_of_resources\",\"message\":\"the worker's memory limit was reached; fewer "
-        "voxels, vertices or smaller maps need less\",\"field\":\"\"}}\n";
-    [[maybe_unused]] const ssize_t written = ::write(STDOUT_FILENO, words, sizeof words - 1);
+constexpr std::uint64_t largest_stack = 16 << 20;
+constexpr std::string_view limit_reached =
+    "\n{\"error\":{\"kind\":\"out_of_resources\",\"message\":\"the worker's memory limit was reached; fewer "
+    "voxels, vertices or smaller maps need less\",\"field\":\"\",\"machine\":false}}\n";
+constexpr std::string_view memory_is_short =
+    "\n{\"error\":{\"kind\":\"out_of_resources\",\"message\":\"the machine is short of memory\",\"field\":\"\","
+    "\"machine\":true}}\n";
+constexpr std::string_view threads_are_short =
+    "\n{\"error\":{\"kind\":\"out_of_resources\",\"message\":\"no thread can be started: the machine is short of "
+    "processes\",\"field\":\"\",\"machine\":true}}\n";
+
+[[noreturn]] void end_with(std::string_view words) {
+    [[maybe_unused]] const ssize_t written = ::write(STDOUT_FILENO, words.data(), words.size());
     _exit(4);
 }
 
@@ -38,6 +50,13 @@ void offer_to_the_kernel() {
     if (file < 0) return;
     [[maybe_unused]] const ssize_t written = ::write(file, "500", 3);
     ::close(file);
+}
+
+[[noreturn]] void say_out_of_memory() { end_with(machine_is_short_of_memory() ? memory_is_short : limit_reached); }
+
+[[noreturn]] void say_no_thread() {
+    if (memory_limit_refuses(largest_stack)) end_with(limit_reached);
+    end_with(machine_is_short_of_memory() ? memory_is_short : threads_are_short);
 }
 
 }  // namespace
@@ -50,8 +69,8 @@ void report_memory_exhaustion() {
             if (std::current_exception()) std::rethrow_exception(std::current_exception());
         } catch (const std::bad_alloc&) {
             say_out_of_memory();
-        } catch (const std::system_error& error) {  // no memory for a thread's stack
-            if (error.code() == std::errc::resource_unavailable_try_again) say_out_of_memory();
+        } catch (const std::system_error& error) {
+            if (error.code() == std::errc::resource_unavailable_try_again) say_no_thread();
         } catch (...) {
         }
         std::abort();

@@ -8,16 +8,17 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <mutex>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <system_error>
 #include <thread>
 
 #include "core/base/error_kind_names.h"
 #include "server/worker/limits.h"
+#include "server/worker/shortage.h"
 #include "server/worker/task.h"
 
 namespace {
@@ -26,6 +27,7 @@ using hairbake::Error;
 using hairbake::ErrorKind;
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
+constexpr std::uint64_t largest_stack = 16 << 20;  // of a thread, which is usually 8 MiB
 
 /// A full disk does not end the task; the daemon reserved space for the last word.
 void say(const Json& words) {
@@ -42,13 +44,17 @@ void say(const Json& words) {
 void redirect_output(const fs::path& words) {
     const int descriptor = ::open(words.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0640);
     if (descriptor < 0 || ::dup2(descriptor, STDOUT_FILENO) < 0)
-        throw Error(ErrorKind::internal, words.string() + " cannot be written");
+        throw Error(ErrorKind::internal, words.string() + " cannot be written", {}, errno);
     ::close(descriptor);
 }
 
+/// Throws Error with the system's error number.
 std::string read_file(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
+    std::ostringstream text;
+    if (!(text << stream.rdbuf()))
+        throw Error(ErrorKind::internal, file.string() + " cannot be read", {}, errno != 0 ? errno : EIO);
+    return text.str();
 }
 
 /// Progress as lines, at most twenty a second and a few hundred a phase: words.jsonl stays small.
@@ -98,22 +104,41 @@ std::jthread watch_for_stop(hairbake::Progress& progress) {
     });
 }
 
+/// Whether the machine is at fault, and not the input or the request. Libraries name no number of the system's when they
+/// cannot start a thread; their messages make an internal error or seem to be about the file.
+bool is_of_machine(const Error& error) {
+    if (error.system_error() == ENOMEM && hairbake::memory_limit_refuses(largest_stack)) return false;
+    if (error.system_error() != 0) return true;
+    const bool may_be = error.kind() == ErrorKind::internal || error.kind() == ErrorKind::bad_input;
+    return may_be && hairbake::machine_is_short_of_threads();
+}
+
 int fail(const Error& error, const std::string& task, const fs::path& folder) {
     say({{"error",
           {{"kind", hairbake::name_of(error.kind())},
            {"message", hairbake::with_names(error.what(), task, folder)},
-           {"field", error.field()}}}});
+           {"field", error.field()},
+           {"machine", is_of_machine(error)}}}});
     return 1;
 }
 
-int work(const fs::path& folder, hairbake::BakeProgress& progress) {
-    const std::string task = read_file(folder / "task.json");
+/// No thread can be started: by the limit of memory, for the thread's stack, or because the machine has no more.
+Error error_of(const std::system_error& error) {
+    if (error.code() == std::errc::resource_unavailable_try_again && hairbake::memory_limit_refuses(largest_stack))
+        return Error(ErrorKind::out_of_resources, "the worker's memory limit was reached");
+    return Error(ErrorKind::out_of_resources, error.what(), {}, error.code().value());
+}
+
+int work(const std::string& task, const fs::path& folder, hairbake::BakeProgress& progress) {
     try {
+        say({{"begin", Json::object()}});
         const std::string done = hairbake::run_task(task, folder, progress);
         say({{"done", Json::parse(done)}});
         return 0;
     } catch (const Error& error) {
         return fail(error, task, folder);
+    } catch (const std::system_error& error) {
+        return fail(error_of(error), task, folder);
     } catch (const std::bad_alloc&) {
         return fail(Error(ErrorKind::out_of_resources, "the worker's memory limit was reached"), task, folder);
     } catch (const std::exception& error) {
@@ -138,8 +163,11 @@ int main(int argc, char** argv) {
         hairbake::report_memory_exhaustion();
         apply(limits);
         const std::jthread watch = watch_for_stop(progress);
-        _exit(work(folder, progress));  // without the destructors of libraries: everything is written
+        _exit(work(read_file(folder / "task.json"), folder,
+                   progress));  // without the destructors of libraries: everything is written
     } catch (const Error& error) {
         return fail(error, "", folder);
+    } catch (const std::system_error& error) {
+        return fail(error_of(error), "", folder);
     }
 }

@@ -10,6 +10,7 @@
 #include "core/request/stages.h"
 #include "core/tools/inspect.h"
 #include "server/worker/thumbnail.h"
+#include "server/worker/trial.h"
 
 namespace hairbake {
 namespace fs = std::filesystem;
@@ -57,6 +58,10 @@ std::string run_task(const std::string& text, const fs::path& folder, BakeProgre
     if (task.at("task") == "bake") {
         bake_stages(task, folder, progress);
         return "{}";
+    }
+    if (task.at("task") == "trial") {
+        run_trial(folder, task.at("threads").get<int>(), progress);
+        return Json{{"versions", versions_text()}}.dump();
     }
     if (task.at("task") != "inspect") throw Error(ErrorKind::internal, "unknown task " + task.at("task").dump());
     Json facts;

@@ -59,15 +59,15 @@ esac
 """
 
 RULES = """
-*'"seed":11,'*) kill -SEGV $$ ;;
+*'"seed":11,'*) say '{"begin":{}}'; kill -SEGV $$ ;;
 *'"seed":12,'*) exec sleep 1000 ;;
 *'"seed":13,'*) trap '' TERM; sleep 1000; sleep 1000 ;;
 *'"seed":14,'*) exec > "$folder/words.jsonl"; while :; do printf 'xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx'; done ;;
 *'"seed":15,'*) say '{"done":{}}' ;;
-*'"seed":16,'*) exit 3 ;;
+*'"seed":16,'*) say '{"begin":{}}'; exit 3 ;;
 *'"seed":17,'*) say '{"error":{"kind":"bad_input","message":"as I say","field":"hair"}}'; exit 1 ;;
 *'"seed":18,'*) say '{"phase":"write","fraction":"x"}'; say '[[[['; say '{"error":[]}'; say '{"done":'; exit 0 ;;
-*'"seed":19,'*) sleep 1000 & exit 3 ;;
+*'"seed":19,'*) say '{"begin":{}}'; sleep 1000 & exit 3 ;;
 """
 
 
@@ -113,8 +113,8 @@ class BadInspections(unittest.TestCase):
         words = ("dies", "dies once", "is short", "is wrong", "is good")
         models = {word: hair_bytes(seed=number) for number, word in enumerate(words)}
         rules = """
-*dies*) kill -SEGV $$ ;;
-*dies-once*) if [ -e MARK ]; then real "$@"; else touch MARK; kill -SEGV $$; fi ;;
+*dies*) say '{"begin":{}}'; kill -SEGV $$ ;;
+*dies-once*) if [ -e MARK ]; then real "$@"; else touch MARK; say '{"begin":{}}'; kill -SEGV $$; fi ;;
 *is-short*) say '{"error":{"kind":"out_of_resources","message":"memory is short","field":""}}'; exit 1 ;;
 *is-wrong*) say '{"error":{"kind":"internal","message":"a mistake of ours","field":""}}'; exit 1 ;;
 """

@@ -195,8 +195,9 @@ test('any number of stages is shown, also one that the page has no text for', ()
             { state: 'running', phase: 'read_hair' },
             { state: 'running' },
             { state: 'queued' },
+            { state: 'queued', trouble: 'No space left' },
             { state: 'done', phase: 'write' },
         ].map(phase_text),
-        ['Read hair', 'starting', 'queued', 'done'],
+        ['Read hair', 'starting', 'queued', 'waits, because the machine is in trouble (No space left)', 'done'],
     );
 });

@@ -27,6 +27,7 @@ TEST_F(WorkerWordsTest, ReadsLinesAsTheyAreWritten) {
     write(R"({"phase": "one", "fraction": 0.25})");
     words.read_more();
     EXPECT_TRUE(progress.empty());  // the line is not complete
+    EXPECT_FALSE(words.has_begun());
     write("\n{\"phase\": \"two\", \"fraction\": 0.5}\n{\"done\": {\"strands\"");
     words.read_more();
     EXPECT_EQ(progress, (std::vector<std::pair<std::string, double>>{{"one", 0.25}, {"two", 0.5}}));
@@ -46,6 +47,24 @@ TEST_F(WorkerWordsTest, ReadsAnError) {
     EXPECT_EQ(words.last_word()->error, ErrorKind::bad_input);
     EXPECT_EQ(words.last_word()->message, "broken");
     EXPECT_EQ(words.last_word()->field, "hair");
+    EXPECT_FALSE(words.last_word()->is_trouble);
+    write(R"({"error": {"kind": "bad_input", "message": "the disk is full", "machine": true}})"
+          "\n");
+    words.read_more();
+    EXPECT_TRUE(words.last_word()->is_trouble);
+}
+
+TEST_F(WorkerWordsTest, TellsWhetherTheWorkerReachedItsTask) {
+    EXPECT_FALSE(words.read_more());
+    EXPECT_EQ(words.trouble(), ENOENT);
+    write("{\"other\": 1}\n");
+    words.read_more();
+    EXPECT_EQ(words.trouble(), 0);
+    EXPECT_FALSE(words.has_begun());
+    write("{\"begin\": {}}\n");
+    words.read_more();
+    EXPECT_TRUE(words.has_begun());
+    EXPECT_FALSE(words.last_word());
 }
 
 TEST_F(WorkerWordsTest, IgnoresWrongTypesAndUnknownWords) {

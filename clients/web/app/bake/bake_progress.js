@@ -37,7 +37,7 @@ export function BakeProgress({ bake, on_change }) {
         <p><${State} state=${bake.state} /> ${!has_ended(bake) && html`<span>
             ${Math.round(100 * bake.fraction)} % ${left}</span>`}</p>
         ${!has_ended(bake) && bake.stages.map(stage => html`<${StageProgress} key=${stage.key} stage=${stage} />`)}
-        ${bake.state === 'queued' && html`<p>It waits for a free worker.</p>`}
+        ${bake.state === 'queued' && !bake.stages.some(stage => stage.trouble) && html`<p>It waits for a free worker.</p>`}
         <${CancelButton} bake=${bake} label="this bake" on_change=${on_change} />
         ${
             bake.state === 'failed' &&

@@ -19,8 +19,12 @@ export function stage_counts_text(counts) {
         .join(', ');
 }
 
-/** What a stage does now: its phase while it runs, else its state. stage: an entry of a bake's `stages`. */
-export function phase_text({ state, phase }) {
+/**
+ * What a stage does now: its phase while it runs, the trouble of the machine that it waits for, else its state.
+ * stage: an entry of a bake's `stages`.
+ */
+export function phase_text({ state, phase, trouble }) {
+    if (trouble) return `waits, because the machine is in trouble (${trouble})`;
     if (state !== 'running') return state;
     return phase ? title_text(phase) : 'starting';
 }

@@ -1,0 +1,34 @@
+#include "server/jobs/stage_outcome.h"
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+
+namespace hairbake {
+namespace {
+
+using End = Outcome::End;
+
+Outcome outcome(End end, ErrorKind kind, const std::string& message, const std::string& field = {}) {
+    return {end, "{}", kind, message, field};
+}
+
+}  // namespace
+
+Outcome outcome_of_exception() {
+    try {
+        throw;
+    } catch (const WrongResult& wrong) {
+        return outcome(End::died, ErrorKind::internal, wrong.what());
+    } catch (const nlohmann::json::exception& wrong) {  // a manifest that lacks members
+        return outcome(End::died, ErrorKind::internal, wrong.what());
+    } catch (const Error& error) {
+        const bool of_input = error.kind() == ErrorKind::bad_input || error.kind() == ErrorKind::usage;
+        return outcome(of_input && error.system_error() == 0 ? End::failed : End::trouble, error.kind(), error.what(),
+                       error.field());
+    } catch (const std::exception& error) {
+        return outcome(End::trouble, ErrorKind::out_of_resources, error.what());
+    }
+}
+
+}  // namespace hairbake
