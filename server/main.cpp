@@ -29,12 +29,18 @@
 #include "server/http/routes.h"
 #include "server/jobs/service.h"
 #include "server/settings.h"
+#include "server/store/database.h"
+#include "server/store/store_folder.h"
+#include "server/store/store_identity.h"
 
 namespace {
 
 using namespace hairbake;
 
 constexpr const char* usage = R"(hairbaked [--config FILE]   serve; without a file, the defaults hold
+hairbaked store accept [--config FILE]
+                            take folder and database of the store as they are; files that the database does not know
+                            move to lost+found at the next start
 hairbaked token new         print a new token and the lines for the configuration
 hairbaked routes            print the routes: method, address, scope, limit of the body in bytes, media types
 hairbaked --version
@@ -96,6 +102,23 @@ int print_routes() {
         std::printf("%s %s %s %llu%s\n", route.method.c_str(), route.pattern.c_str(), name_of(route.scope).c_str(),
                     static_cast<unsigned long long>(route.body_limit), types.c_str());
     }
+    return 0;
+}
+
+Settings settings_of(const char* file) {
+    Settings settings = file ? read_settings(file) : Settings();
+    complete(settings);
+    return settings;
+}
+
+/// For a store whose start was stopped: see StoreIdentity.
+int accept_store(const char* file) {
+    ::umask(027);
+    const Settings settings = settings_of(file);
+    const StoreFolder folder(settings.store, settings.store_id);
+    Database database(folder.database(), folder.hooks_to_accept());
+    StoreIdentity::accept(folder.path(), database);
+    std::printf("The folder %s and its database are one store now. Start the daemon.\n", settings.store.c_str());
     return 0;
 }
 
@@ -209,13 +232,14 @@ int main(int argc, char** argv) {
         if (argc == 3 && first == "token" && !std::strcmp(argv[2], "new")) return print_new_token();
         if (argc == 2 && first == "routes") return print_routes();
         if (argc == 2 && first == "--version") return std::printf("hairbaked %s\n", HAIRBAKE_VERSION), 0;
+        if (first == "store" && (argc == 3 || (argc == 5 && !std::strcmp(argv[3], "--config"))) &&
+            !std::strcmp(argv[2], "accept"))
+            return accept_store(argc == 5 ? argv[4] : nullptr);
         if (argc != 1 && !(argc == 3 && first == "--config")) {
             std::fputs(usage, stderr);
             return 2;
         }
-        Settings settings = argc == 3 ? read_settings(argv[2]) : Settings();
-        complete(settings);
-        return serve(settings);
+        return serve(settings_of(argc == 3 ? argv[2] : nullptr));
     } catch (const Error& error) {
         std::fprintf(stderr, "hairbaked: %s\n", error.what());
         return error.kind() == ErrorKind::usage ? 2 : error.kind() == ErrorKind::bad_input ? 3 : 1;

@@ -124,10 +124,12 @@ void read_listen(Block& block, Settings& settings, const fs::path& base) {
 
 void read_store(Block& block, Settings& settings, const fs::path& base) {
     block.path("folder", settings.store, base);
+    block.text("id", settings.store_id);
     block.number("budget_mb", settings.budget_bytes, 1, 1 << 30, 1 << 20);
     block.number("blob_mb", settings.blob_bytes, 1, 1 << 20, 1 << 20);
     block.number("upload_lifetime_s", settings.upload_lifetime_s, 1, 366 * 86400);
     block.number("open_uploads", settings.open_uploads, 1, 1'000'000);
+    block.number("scrub_s", settings.scrub_s, 0, 366 * 86400);
     block.number("keep_failed_s", settings.keep_failed_s, 1, 3660ll * 86400);
 }
 
@@ -207,6 +209,9 @@ void complete(Settings& settings) {
         for (const std::string& name : runners) allowed += (allowed.empty() ? "" : ", ") + name;
         refuse("workers.runner", "is " + settings.runner + "; allowed is " + allowed);
     }
+    if (!settings.store_id.empty() && (settings.store_id.size() != 32 ||
+                                       settings.store_id.find_first_not_of("0123456789abcdef") != std::string::npos))
+        refuse("store.id", "is " + settings.store_id + "; allowed are 32 hexadecimal digits, as in the file store-id");
     if (!fs::exists(settings.worker)) refuse("workers.program", settings.worker.string() + " does not exist");
     settings.store = fs::absolute(settings.store);
 }

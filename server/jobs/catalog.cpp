@@ -168,7 +168,7 @@ void Catalog::remove(const std::string& kind, const std::string& digest) {
                     {digest, digest, digest})
                  .empty();
     });
-    if (!blob_needed) store_.remove({digest});
+    if (!blob_needed) store_.remove({digest}, "the " + kind + " was deleted on request");
 }
 
 }  // namespace hairbake

@@ -8,11 +8,13 @@
 #include "server/store/blob_store.h"
 #include "server/store/eviction.h"
 #include "server/store/pruning.h"
+#include "server/store/store_identity.h"
 
 namespace hairbake {
 
-Maintenance::Maintenance(Database& database, BlobStore& store, Uploads& uploads, const MaintenanceSettings& settings)
-    : database_(database), store_(store), uploads_(uploads), settings_(settings) {
+Maintenance::Maintenance(Database& database, StoreIdentity& identity, BlobStore& store, Uploads& uploads,
+                         const MaintenanceSettings& settings)
+    : database_(database), identity_(identity), store_(store), uploads_(uploads), settings_(settings) {
     prune_bakes();
     thread_ = std::jthread([this] { run(); });
 }
@@ -39,6 +41,7 @@ void Maintenance::run() {
             uploads_.expire();
             prune_bakes();
             evict(database_, store_, settings_.budget);
+            identity_.advance_if_changed();
         } catch (const std::exception& error) {
             spdlog::error("maintenance: {}", error.what());
         }

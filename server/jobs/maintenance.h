@@ -10,6 +10,7 @@ namespace hairbake {
 
 class BlobStore;
 class Database;
+class StoreIdentity;
 class Uploads;
 
 struct MaintenanceSettings {
@@ -17,11 +18,12 @@ struct MaintenanceSettings {
     std::uint64_t budget = 0;  ///< of the store, in bytes
 };
 
-/// A thread that, once a minute, records the uses of blobs, removes expired uploads and old failed bakes, and keeps the
-/// store within its budget. Old failed bakes are removed by the constructor, too.
+/// A thread that, once a minute, records the uses of blobs and the store's generation, removes expired uploads and old
+/// failed bakes, and keeps the store within its budget. Old failed bakes are removed by the constructor, too.
 class Maintenance {
 public:
-    Maintenance(Database& database, BlobStore& store, Uploads& uploads, const MaintenanceSettings& settings);
+    Maintenance(Database& database, StoreIdentity& identity, BlobStore& store, Uploads& uploads,
+                const MaintenanceSettings& settings);
     ~Maintenance();
 
     /// Tells the thread to end; returns at once.
@@ -32,6 +34,7 @@ private:
     void prune_bakes();
 
     Database& database_;
+    StoreIdentity& identity_;
     BlobStore& store_;
     Uploads& uploads_;
     const MaintenanceSettings settings_;

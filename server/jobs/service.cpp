@@ -1,11 +1,8 @@
 #include "server/jobs/service.h"
 
-#include <fcntl.h>
 #include <spdlog/spdlog.h>
-#include <sys/file.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <filesystem>
 #include <span>
 
@@ -14,21 +11,15 @@
 #include "server/jobs/maintenance.h"
 #include "server/jobs/queue.h"
 #include "server/jobs/runner_kinds.h"
+#include "server/jobs/scrub.h"
 #include "server/jobs/worker_pool.h"
 #include "server/store/database.h"
 #include "server/store/eviction.h"
+#include "server/store/store_folder.h"
+#include "server/store/store_identity.h"
 
 namespace hairbake {
 namespace {
-
-Descriptor lock_store(const std::filesystem::path& folder) {
-    make_folder(folder);
-    Descriptor lock(::open((folder / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0640));
-    if (!lock) throw_store_error(folder / "lock", errno);
-    if (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0)
-        throw Error(ErrorKind::usage, "another hairbaked works on the store " + folder.string());
-    return lock;
-}
 
 RunnerSettings runner_settings(const Settings& settings) {
     return {settings.worker, settings.memory_bytes, settings.cpu_seconds, settings.wall_seconds};
@@ -40,8 +31,9 @@ RunnerSettings runner_settings(const Settings& settings) {
 struct Service::Parts {
     Parts(const Settings& given, std::unique_ptr<Runner> with)
         : settings(given),
-          lock(lock_store(settings.store)),
-          database(settings.store / "hairbake.db"),
+          folder(settings.store, settings.store_id),
+          database(folder.database(), folder.hooks()),
+          identity(folder.path(), database, settings.store_id),
           store(settings.store, database),
           runner(std::move(with)),
           inspector(make_runner(local_runner_name, runner_settings(settings))),
@@ -63,26 +55,38 @@ struct Service::Parts {
         return tasks;
     }
 
+    /// On a full disk the service starts all the same, to serve what is stored.
+    void begin_generation() try { identity.advance(); } catch (const Error& error) {
+        if (error.kind() != ErrorKind::out_of_resources) throw;
+        spdlog::warn("the store's generation cannot be recorded: {}", error.what());
+    }
+
     void boot() {
         const std::vector<StartedTask> surviving = surviving_tasks();
         std::set<std::string> spared;
         for (const StartedTask& task : surviving) spared.insert(task.folder);
-        if (const std::size_t lost = store.recover(spared)) spdlog::warn("{} blobs were lost", lost);
+        if (const std::size_t lost = store.recover(spared, identity.accepted()))
+            spdlog::warn("{} blobs were lost", lost);
         uploads.recover();
         const Queue::Recovered recovered = queue.recover(surviving);
         if (recovered.lost) spdlog::warn("{} stages lost files; they are baked again", recovered.lost);
         if (recovered.planned_again)
             spdlog::info("{} queued stages of another version of hairbake were planned again", recovered.planned_again);
-        maintenance = std::make_unique<Maintenance>(database, store, uploads,
+        begin_generation();
+        spdlog::info("the store {} has the id {}", settings.store.string(), identity.id());
+        maintenance = std::make_unique<Maintenance>(database, identity, store, uploads,
                                                     MaintenanceSettings{settings.keep_failed_s, settings.budget_bytes});
+        scrub = std::make_unique<Scrub>(store, settings.scrub_s,
+                                        [this](Sql& sql, const std::string& digest) { queue.blob_lost(sql, digest); });
         pool = std::make_unique<WorkerPool>(
             queue, *runner, database, store,
             WorkerPoolSettings{settings.runner, settings.budget_bytes, settings.workers, settings.worker_threads});
     }
 
     const Settings settings;
-    Descriptor lock;
+    StoreFolder folder;
     Database database;
+    StoreIdentity identity;
     BlobStore store;
     std::unique_ptr<Runner> runner, inspector;  ///< of stages, of inspections
     Queue queue;
@@ -92,6 +96,7 @@ struct Service::Parts {
     Names names;
     Uploads uploads;
     std::unique_ptr<Maintenance> maintenance;
+    std::unique_ptr<Scrub> scrub;
     std::unique_ptr<WorkerPool> pool;
 };
 
@@ -107,8 +112,10 @@ Service::~Service() {
     stop();
     parts_->pool.reset();
     parts_->maintenance.reset();
+    parts_->scrub.reset();
     try {
         parts_->store.flush_uses();
+        parts_->identity.advance();  // a copy of the database that was made before is now an old one
     } catch (const std::exception& error) {
         spdlog::error("at the end: {}", error.what());
     }
@@ -117,6 +124,7 @@ Service::~Service() {
 void Service::stop() {
     parts_->queue.stop();
     parts_->maintenance->stop();
+    parts_->scrub->stop();
 }
 
 std::filesystem::path Service::incoming_folder() const { return parts_->store.incoming_folder(); }
@@ -134,6 +142,7 @@ std::unique_ptr<IncomingFile> Service::receive(std::uint64_t expected_bytes, con
         throw Refusal(Refused::too_large, "the body is " + std::to_string(expected_bytes) +
                                               " bytes long; allowed is up to " +
                                               std::to_string(parts_->settings.blob_bytes));
+    parts_->database.check_in_place();
     const bool known = is_digest(digest) && parts_->store.size_of(digest);  // then the store does not grow
     if (!known) make_room(parts_->database, parts_->store, parts_->settings.budget_bytes, expected_bytes);
     return std::make_unique<IncomingFile>(parts_->store.incoming_folder(), parts_->settings.blob_bytes);
@@ -190,6 +199,7 @@ std::string Service::not_ready() {
     if (const std::string reason = parts_->queue.paused().reason; !reason.empty())
         return "the queue is paused and tries again by itself: " + reason;
     try {
+        parts_->database.check_in_place();
         IncomingFile probe(parts_->store.incoming_folder(), 16);
         probe.add(std::as_bytes(std::span("ready", 5)));
         parts_->database.read([](Sql& sql) { sql.rows("SELECT count(*) FROM names"); });

@@ -36,6 +36,7 @@ public:
     // ---- blobs
     /// A file to receive a body into. Makes room for `expected_bytes`, unless the blob `digest` is stored.
     /// Throws Refusal(full) when there is no room.
+    /// Throws Refusal(busy) when the store was moved, deleted or replaced.
     std::unique_ptr<IncomingFile> receive(std::uint64_t expected_bytes, const std::string& digest = {});
 
     /// Makes the received file a blob; returns whether it is new.

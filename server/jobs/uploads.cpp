@@ -12,6 +12,7 @@
 #include "server/store/eviction.h"
 #include "server/store/file_system.h"
 #include "server/store/refusal.h"
+#include "server/store/removal_log.h"
 
 namespace hairbake {
 namespace fs = std::filesystem;
@@ -47,14 +48,21 @@ std::uint64_t Uploads::size_on_disk(const std::string& id) const {
 }
 
 void Uploads::recover() {
-    std::error_code ignored;
+    FileCount unknown, removed;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
         bool known = false;
         database_.read([&](Sql& sql) {
             known = !sql.rows("SELECT 1 FROM uploads WHERE id = ?", {entry.path().filename().string()}).empty();
         });
-        if (!known) fs::remove(entry, ignored);
+        if (known) continue;
+        std::error_code error;  // the bytes of a second link stay where the other link is
+        if (entry.file_size(error) == 0 || entry.hard_link_count(error) > 1)
+            remove_counted(entry.path(), removed);
+        else
+            store_.put_aside(entry.path(), unknown);
     }
+    log_removal(removed, "uploads without a row that are empty, or whose bytes are a blob");
+    log_move(unknown, store_.lost_folder(), "the database does not know these uploads");
     database_.write([&](Sql& sql) {
         for (const SqlRow& row : sql.rows("SELECT id FROM uploads"))
             if (!fs::exists(folder_ / row.text(0))) sql.run("DELETE FROM uploads WHERE id = ?", {row.text(0)});
@@ -85,7 +93,7 @@ void Uploads::expire() {
             old.push_back(row.text(0));
     });
     for (const std::string& id : old) try {
-            remove(id);
+            remove(id, "the upload expired");
         } catch (const std::exception& error) {  // a request writes to it, or the disk is full
             spdlog::warn("the expired upload {} stays: {}", id, error.what());
         }
@@ -126,6 +134,7 @@ void Uploads::check(std::uint64_t bytes, const std::string& sha256, const std::s
 UploadState Uploads::create(std::uint64_t bytes, const std::string& sha256, const std::string& metadata,
                             const std::string& token) {
     check(bytes, sha256, token);
+    database_.check_in_place();
     UploadState state{random_name(), metadata, bytes, 0, now() + limits_.lifetime_s};
     const Descriptor file(::open((folder_ / state.id).c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0640));
     if (!file) throw_store_error(folder_ / state.id, errno);
@@ -151,6 +160,7 @@ UploadState Uploads::get(const std::string& id) {
 Uploads::Appended Uploads::append(const std::string& id, std::uint64_t offset,
                                   const std::function<void(const Receiver&)>& read) {
     const Busy busy(*this, id);
+    database_.check_in_place();
     const UploadState state = get(id);
     if (offset != state.offset)
         throw Refusal(Refused::conflict,
@@ -186,8 +196,8 @@ Uploads::Appended Uploads::complete(const std::string& id) {
     const std::string found = digest_of_file(folder_ / id);
     const bool whole = found == expected;
     if (whole) make_blob(id, expected, size);
-    database_.write([&](Sql& sql) { sql.run("DELETE FROM uploads WHERE id = ?", {id}); });
-    ::unlink((folder_ / id).c_str());
+    remove_file(id, whole ? "the upload became a blob, which keeps the bytes" : "the upload's digest is wrong");
+    if (whole) store_.note_other_link_removed(expected);
     if (!whole)
         throw Refusal(Refused::unprocessable,
                       "the digest of the uploaded bytes is " + found + "; allowed is " + expected, "sha256");
@@ -213,11 +223,17 @@ void Uploads::make_blob(const std::string& id, const std::string& digest, std::u
     store_.adopt(second.path, digest);
 }
 
-void Uploads::remove(const std::string& id) {
+void Uploads::remove(const std::string& id, std::string_view reason) {
     const Busy busy(*this, id);
     get(id);
+    remove_file(id, reason);
+}
+
+void Uploads::remove_file(const std::string& id, std::string_view reason) {
     database_.write([&](Sql& sql) { sql.run("DELETE FROM uploads WHERE id = ?", {id}); });
-    ::unlink((folder_ / id).c_str());
+    FileCount removed;
+    remove_counted(folder_ / id, removed);
+    log_removal(removed, reason);
 }
 
 }  // namespace hairbake

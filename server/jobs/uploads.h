@@ -9,6 +9,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace hairbake {
 
@@ -34,7 +35,8 @@ public:
     };
     Uploads(Database& database, BlobStore& store, std::filesystem::path folder, const Limits& limits);
 
-    /// At boot: removes files without a row and rows without a file; makes blobs of uploads that are whole.
+    /// At boot: moves files without a row to lost+found, removes rows without a file; makes blobs of uploads that are
+    /// whole.
     void recover();
     /// Removes expired uploads.
     void expire();
@@ -60,13 +62,15 @@ public:
     /// Throws Refusal(conflict) for another offset and while another request writes to the upload.
     /// Throws Refusal(full) when there is no room for the blob.
     Appended append(const std::string& id, std::uint64_t offset, const std::function<void(const Receiver&)>& read);
-    void remove(const std::string& id);
+    /// `reason` is for the log.
+    void remove(const std::string& id, std::string_view reason = "the upload was deleted on request");
 
 private:
     struct Busy;
     std::uint64_t size_on_disk(const std::string& id) const;
     double prolong(const std::string& id);
     Appended complete(const std::string& id);
+    void remove_file(const std::string& id, std::string_view reason);
     void make_blob(const std::string& id, const std::string& digest, std::uint64_t bytes);
     void complete_whole_ones();
 

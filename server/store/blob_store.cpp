@@ -8,12 +8,8 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
-#include <system_error>
-#include <unordered_map>
 
 #include "core/base/assert.h"
-#include "core/base/digest.h"
-#include "core/base/error.h"
 #include "server/store/database.h"
 #include "server/store/refusal.h"
 
@@ -27,9 +23,32 @@ bool is_digest(const std::string& text) {
 
 std::string blob_name(const std::string& digest) { return digest.substr(0, 2) + "/" + digest; }
 
+namespace {
+
+FileFacts read_facts(const struct stat& facts) {
+    const auto nanoseconds = [](const timespec& time) {
+        return time.tv_sec * std::int64_t(1'000'000'000) + time.tv_nsec;
+    };
+    return {facts.st_size, nanoseconds(facts.st_mtim), nanoseconds(facts.st_ctim)};
+}
+
+}  // namespace
+
+std::optional<FileFacts> facts_of(const fs::path& file) {
+    struct stat facts {};
+    return ::stat(file.c_str(), &facts) == 0 ? std::optional(read_facts(facts)) : std::nullopt;
+}
+
+std::optional<FileFacts> facts_of(int descriptor) {
+    struct stat facts {};
+    if (::fstat(descriptor, &facts) != 0 || !S_ISREG(facts.st_mode)) return std::nullopt;
+    return read_facts(facts);
+}
+
 double now() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
 
-BlobStore::BlobStore(const fs::path& folder, Database& database) : folder_(folder), database_(database) {
+BlobStore::BlobStore(const fs::path& folder, Database& database)
+    : folder_(folder), database_(database), lost_found_(folder) {
     make_folder(folder_ / "blobs");
     make_folder(folder_ / "tmp");
     constexpr char digits[] = "0123456789abcdef";
@@ -45,29 +64,6 @@ BlobStore::BlobStore(const fs::path& folder, Database& database) : folder_(folde
 fs::path BlobStore::path_of(const std::string& digest) const {
     HAIRBAKE_ASSERT(is_digest(digest));
     return folder_ / "blobs" / blob_name(digest);
-}
-
-std::size_t BlobStore::recover(const std::set<std::string>& spared) {
-    std::error_code ignored;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "tmp"))
-        if (!spared.count(entry.path().filename().string())) fs::remove_all(entry, ignored);
-
-    std::unordered_map<std::string, std::int64_t> rows;
-    database_.read([&](Sql& sql) {
-        for (const SqlRow& row : sql.rows("SELECT sha256, bytes FROM blobs")) rows[row.text(0)] = row.integer(1);
-    });
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_ / "blobs")) {
-        if (entry.is_directory()) continue;
-        const auto row = rows.find(entry.path().filename().string());
-        if (row != rows.end() && static_cast<std::int64_t>(entry.file_size()) == row->second)
-            rows.erase(row);  // as it should be
-        else
-            fs::remove(entry, ignored);
-    }
-    std::vector<std::string> lost;
-    for (const auto& [digest, bytes] : rows) lost.push_back(digest);
-    if (!lost.empty()) forget(lost);
-    return lost.size();
 }
 
 std::optional<std::uint64_t> BlobStore::size_of(const std::string& digest) {
@@ -90,18 +86,26 @@ void BlobStore::check(IncomingFile& file, const std::string& expected) {
 
 bool BlobStore::adopt(const fs::path& file, const std::string& digest) {
     const auto held = database_.lock();
+    database_.check_in_place();
     const bool known = size_of(digest).has_value();
+    const fs::path path = path_of(digest);
+    const std::optional<FileFacts> stored = known ? facts_of(path) : std::nullopt;
     // Stored bytes that were not verified since the start may be spoiled; those of `file` are good.
-    if (!known || !is_verified(digest)) {
-        const auto bytes = static_cast<std::int64_t>(fs::file_size(file));
-        if (::rename(file.c_str(), path_of(digest).c_str()) != 0) throw_store_error(file, errno);
-        sync_folder(path_of(digest).parent_path());
+    if (!stored || !is_verified(digest, *stored)) {
+        if (::rename(file.c_str(), path.c_str()) != 0) throw_store_error(file, errno);
+        sync_folder(path.parent_path());
+        const FileFacts facts = facts_of(path).value_or(FileFacts{});
         database_.write([&](Sql& sql) {
-            sql.run("INSERT OR IGNORE INTO blobs VALUES(?, ?, ?, ?)", {digest, bytes, now(), now()});
+            sql.run(
+                "INSERT INTO blobs(sha256, bytes, created, used, mtime_ns, ctime_ns, checked) VALUES(?, ?, ?, ?, ?, ?, "
+                "?) ON CONFLICT(sha256) DO UPDATE SET mtime_ns = excluded.mtime_ns, ctime_ns = excluded.ctime_ns, "
+                "checked = excluded.checked",
+                {digest, facts.bytes, now(), now(), facts.mtime_ns, facts.ctime_ns, now()});
+            sql.run("DELETE FROM removals WHERE sha256 = ?", {digest});
         });
-        if (!known) total_bytes_ += static_cast<std::uint64_t>(bytes);
+        if (!known) total_bytes_ += static_cast<std::uint64_t>(facts.bytes);
         const std::lock_guard lock(mutex_);
-        verified_.insert(digest);
+        verified_[digest] = {now(), facts};
     }
     touch(digest);
     return !known;
@@ -112,74 +116,53 @@ OpenBlob BlobStore::open(const std::string& digest, const OnLoss& on_loss) {
         throw Refusal(Refused::not_found, "there is no blob " + digest.substr(0, 64), "sha256");
     OpenBlob blob{Descriptor(::open(path_of(digest).c_str(), O_RDONLY | O_CLOEXEC)), 0};
     if (!blob.file && errno == ENOENT) lose_if_missing(digest, on_loss);
-    struct stat facts {};
-    if (!blob.file || ::fstat(blob.file.get(), &facts) != 0 || !S_ISREG(facts.st_mode)) refuse_for_now(digest);
-    blob.bytes = static_cast<std::uint64_t>(facts.st_size);
+    const std::optional<FileFacts> facts = facts_of(blob.file.get());
+    if (!facts) refuse_for_now(digest);
+    blob.bytes = static_cast<std::uint64_t>(facts->bytes);
     verify(digest, blob.file.get(), on_loss);
     touch(digest);
     return blob;
 }
 
-/// The reason why the file cannot be read may pass, so nothing is forgotten.
-void BlobStore::refuse_for_now(const std::string& digest) {
-    throw Refusal(Refused::busy, "the stored bytes of sha256:" + digest + " cannot be read now");
-}
-
-void BlobStore::lose_if_missing(const std::string& digest, const OnLoss& on_loss) {
-    const auto held = database_.lock();  // it may have been removed and sent again meanwhile
-    if (fs::exists(path_of(digest)) || !size_of(digest)) refuse_for_now(digest);
-    lose(digest, on_loss);
-    throw LostBlob(digest);
-}
-
-bool BlobStore::is_verified(const std::string& digest) {
-    const std::lock_guard lock(mutex_);
-    return verified_.count(digest) > 0;
-}
-
-void BlobStore::verify(const std::string& digest, int descriptor, const OnLoss& on_loss) {
-    if (is_verified(digest)) return;
-    Digest found;
-    std::vector<std::byte> piece(1 << 18);
-    ssize_t count = 0;
-    for (off_t at = 0; (count = ::pread(descriptor, piece.data(), piece.size(), at)) > 0; at += count)
-        found.add(std::span(piece).first(static_cast<std::size_t>(count)));
-    if (count < 0) refuse_for_now(digest);
-    if (found.hex() != digest) {
-        const auto held = database_.lock();
-        if (is_verified(digest)) refuse_for_now(digest);  // replaced by good bytes meanwhile
-        lose(digest, on_loss);
-        throw LostBlob(digest);
-    }
-    const std::lock_guard lock(mutex_);
-    verified_.insert(digest);
-}
-
 void BlobStore::lose(const std::string& digest, const OnLoss& on_loss) {
     const auto held = database_.lock();
     forget({digest}, on_loss);
-    ::unlink(path_of(digest).c_str());
+    FileCount moved;
+    if (fs::exists(path_of(digest))) put_aside(path_of(digest), moved);
+    log_move(moved, lost_folder(), "the bytes of blob " + digest + " do not have its digest");
 }
 
-void BlobStore::remove(const std::vector<std::string>& digests) {
+/// The rows in `removals` tell the next start that these files may go, should this process die before all are gone.
+void BlobStore::remove(const std::vector<std::string>& digests, std::string_view reason) {
     const auto held = database_.lock();
-    forget(digests);
-    for (const std::string& digest : digests) ::unlink(path_of(digest).c_str());
+    forget(digests, [&](Sql& sql) {
+        for (const std::string& digest : digests)
+            sql.run("INSERT OR REPLACE INTO removals VALUES(?, ?)", {digest, now()});
+    });
+    FileCount removed;
+    for (const std::string& digest : digests) remove_counted(path_of(digest), removed);
+    log_removal(removed, reason);
 }
 
-void BlobStore::forget(const std::vector<std::string>& digests, const OnLoss& on_loss) {
+void BlobStore::put_aside(const fs::path& file, FileCount& count) {
+    const auto held = database_.lock();
+    lost_found_.take(file, count);
+}
+
+void BlobStore::forget(const std::vector<std::string>& digests, const OnLoss& in_transaction) {
     const auto held = database_.lock();
     std::int64_t bytes = 0;
     database_.write([&](Sql& sql) {
         for (const std::string& digest : digests)
             for (const SqlRow& row : sql.rows("DELETE FROM blobs WHERE sha256 = ? RETURNING bytes", {digest}))
                 bytes += row.integer(0);
-        if (on_loss) on_loss(sql);
+        if (in_transaction) in_transaction(sql);
     });
     total_bytes_ -= static_cast<std::uint64_t>(bytes);
     const std::lock_guard lock(mutex_);
     for (const std::string& digest : digests) {
         verified_.erase(digest);
+        checked_.erase(digest);
         used_.erase(digest);
     }
 }
@@ -191,13 +174,24 @@ void BlobStore::touch(const std::string& digest) {
 
 void BlobStore::flush_uses() {
     std::unordered_map<std::string, double> used;
+    std::unordered_map<std::string, Check> checked;
     {
         const std::lock_guard lock(mutex_);
         used.swap(used_);
+        checked.swap(checked_);
     }
-    if (used.empty()) return;
+    constexpr double minute = 60;  // longer than a file system takes to make the removal of a file durable
+    bool are_old = false;          // removals that the next start need not know
+    database_.read([&](Sql& sql) {
+        are_old = !sql.rows("SELECT 1 FROM removals WHERE time < ? LIMIT 1", {now() - minute}).empty();
+    });
+    if (used.empty() && checked.empty() && !are_old) return;
     database_.write([&](Sql& sql) {
         for (const auto& [digest, time] : used) sql.run("UPDATE blobs SET used = ? WHERE sha256 = ?", {time, digest});
+        for (const auto& [digest, check] : checked)
+            sql.run("UPDATE blobs SET checked = ?, mtime_ns = ?, ctime_ns = ? WHERE sha256 = ?",
+                    {check.time, check.facts.mtime_ns, check.facts.ctime_ns, digest});
+        sql.run("DELETE FROM removals WHERE time < ?", {now() - minute});
     });
 }
 

@@ -10,12 +10,13 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <unordered_map>
-#include <unordered_set>
 #include <vector>
 
 #include "server/store/file_system.h"
 #include "server/store/incoming_file.h"
+#include "server/store/lost_found.h"
 
 namespace hairbake {
 
@@ -41,6 +42,17 @@ struct OpenBlob {
     std::uint64_t bytes = 0;
 };
 
+/// What the file system says of a file. Every change of its bytes changes ctime.
+struct FileFacts {
+    std::int64_t bytes = 0, mtime_ns = 0, ctime_ns = 0;  ///< nanoseconds since 1970
+    bool operator==(const FileFacts&) const = default;
+};
+
+/// Nothing when there is no file or it cannot be looked at.
+std::optional<FileFacts> facts_of(const std::filesystem::path& file);
+/// The same of an open file; nothing, too, when it is no regular file.
+std::optional<FileFacts> facts_of(int descriptor);
+
 /// `folder`/blobs/ab/<sha256>, `folder`/tmp and the table `blobs`. Thread-safe. docs/architecture.md tells how a blob
 /// becomes durable.
 class BlobStore {
@@ -50,10 +62,14 @@ public:
 
     BlobStore(const std::filesystem::path& folder, Database& database);
 
-    /// At boot, before anything else: removes the entries of tmp/ but those in `spared`, removes blobs without a row,
-    /// and forgets rows without a whole file. Returns how many rows it forgot; Queue::recover() updates what refers to
-    /// them.
-    std::size_t recover(const std::set<std::string>& spared = {});
+    /// At boot, before anything else. The caller has made sure that folder and database belong together.
+    ///
+    /// Removes the bodies and work folders in tmp/ but those in `spared`, and files of blobs whose removal was
+    /// committed.
+    /// Moves other files without a row, and files of another size, to lost+found. Forgets rows without a whole file and
+    /// returns how many; Queue::recover() updates what refers to them.
+    /// Throws Error(bad_input), and changes nothing, when no blob has a file and not `may_miss_all`.
+    std::size_t recover(const std::set<std::string>& spared = {}, bool may_miss_all = false);
 
     std::filesystem::path incoming_folder() const { return folder_ / "tmp"; }
     std::filesystem::path path_of(const std::string& digest) const;
@@ -67,38 +83,68 @@ public:
     static void check(IncomingFile& file, const std::string& expected);
 
     /// Makes a file a blob by renaming it; returns whether the blob is new. The caller has synced the file and checked
-    /// its digest. A stored blob that was not verified since the start is replaced.
+    /// its digest. A stored blob whose present bytes were not verified since the start is replaced.
     bool adopt(const std::filesystem::path& file, const std::string& digest);
 
-    /// Opens a blob; verifies its digest the first time after the start.
+    /// After a second link to a blob's file was unlinked: that changed the file's ctime, and not its bytes.
+    void note_other_link_removed(const std::string& digest);
+
+    /// Opens a blob; verifies its digest the first time after the start, and when size, mtime or ctime of the file have
+    /// changed since.
     /// Throws Refusal(not_found).
     /// Throws Refusal(busy) for a file that cannot be read now; it is not forgotten.
     /// Throws LostBlob.
     OpenBlob open(const std::string& digest, const OnLoss& on_loss);
 
-    /// Forgets a blob whose bytes do not have its digest.
+    /// Forgets a blob whose bytes do not have its digest, and moves the file to lost+found.
     void lose(const std::string& digest, const OnLoss& on_loss);
 
-    /// Removes rows and files, in one transaction.
-    void remove(const std::vector<std::string>& digests);
+    /// At most `most` blobs whose digest was last checked before `time` (seconds since 1970), longest ago first.
+    std::vector<std::string> unchecked_since(double time, int most);
 
-    /// Notes that blobs were used; written to the database with flush_uses().
+    /// Reads a blob from the disk and compares its digest. `pace` is called with the number of bytes after each piece
+    /// and may throw to end the check. Nothing happens when there is no such blob any more.
+    /// Throws as open().
+    void check_digest(const std::string& digest, const OnLoss& on_loss, const std::function<void(std::size_t)>& pace);
+
+    /// Puts off the next check of a blob that could not be read.
+    void note_check_failed(const std::string& digest);
+
+    /// Removes rows and files, in one transaction. `reason` is for the log.
+    void remove(const std::vector<std::string>& digests, std::string_view reason = "nothing needs them any more");
+
+    /// Moves a file of the store to lost+found and adds it to `count`.
+    void put_aside(const std::filesystem::path& file, FileCount& count);
+    std::filesystem::path lost_folder() const { return lost_found_.folder(); }
+
+    /// Notes that blobs were used; written to the database with flush_uses(), as are checks of digests.
     void touch(const std::string& digest);
     void flush_uses();
 
 private:
-    bool is_verified(const std::string& digest);
-    void verify(const std::string& digest, int descriptor, const OnLoss& on_loss);
+    void sweep_incoming(const std::set<std::string>& spared);
+    void clear_unknown_files(const std::vector<std::filesystem::path>& files);
+    bool is_verified(const std::string& digest, const FileFacts& facts);
+    void verify(const std::string& digest, int descriptor, const OnLoss& on_loss,
+                const std::function<void(std::size_t)>& pace = {});
+    void note_verified(const std::string& digest, const FileFacts& facts);
     [[noreturn]] static void refuse_for_now(const std::string& digest);
     [[noreturn]] void lose_if_missing(const std::string& digest, const OnLoss& on_loss);
-    void forget(const std::vector<std::string>& digests, const OnLoss& on_loss = {});
+    void forget(const std::vector<std::string>& digests, const OnLoss& in_transaction = {});
 
     std::filesystem::path folder_;
     Database& database_;
     std::atomic<std::uint64_t> total_bytes_ = 0;  ///< of all rows; changed under database_.lock()
     std::mutex mutex_;                            ///< guards the members below
-    std::unordered_set<std::string> verified_;
-    std::unordered_map<std::string, double> used_;  ///< by digest: when
+    /// What a file was like when its digest was right, and when that was.
+    struct Check {
+        double time = 0;
+        FileFacts facts;
+    };
+    std::unordered_map<std::string, Check> verified_;  ///< by digest; since the start
+    std::unordered_map<std::string, Check> checked_;   ///< that flush_uses() has yet to write
+    std::unordered_map<std::string, double> used_;     ///< by digest: when
+    LostFound lost_found_;                             ///< guarded by database_.lock()
 };
 
 /// Seconds since 1970.

@@ -4,6 +4,7 @@
 #include <sqlite3.h>
 
 #include <map>
+#include <tuple>
 
 #include "core/base/error.h"
 #include "server/store/schema.h"
@@ -69,19 +70,23 @@ void bind(SQLite::Statement& statement, const std::vector<SqlValue>& values) {
 
 class Database::Connection : public Sql {
 public:
-    Connection(const std::filesystem::path& file, int flags) : database(file.string(), flags) {}
+    Connection(const std::filesystem::path& file, int flags) : database(file.string(), flags) {
+        let_close_change_files(false);
+    }
+
+    /// The version of the file, 0 in an empty one, and how many tables and indices it has. Changes nothing.
+    std::pair<int, int> version_and_tables() {
+        const int version = database.execAndGet("PRAGMA user_version").getInt();
+        return {version, database.execAndGet("SELECT count(*) FROM sqlite_master").getInt()};
+    }
 
     /// Settings, check and tables of the connection that writes.
-    void prepare_file() {
+    void prepare_file(int found) {
         database.exec("PRAGMA journal_mode = WAL");
         database.exec("PRAGMA synchronous = FULL");
         const std::string check = database.execAndGet("PRAGMA quick_check(1)").getString();
         if (check != "ok") throw Error(ErrorKind::bad_input, check);
-        const int found = database.execAndGet("PRAGMA user_version").getInt();
         if (found == schema_version) return;
-        if (found < 0 || found > schema_version)
-            throw Error(ErrorKind::bad_input, "its version is " + std::to_string(found) +
-                                                  "; this program reads up to " + std::to_string(schema_version));
         SQLite::Transaction transaction(database);
         for (int from = found; from < schema_version; ++from) database.exec(schema_statements(from));
         database.exec("PRAGMA user_version = " + std::to_string(schema_version));
@@ -117,6 +122,12 @@ public:
         }
     }
 
+    /// Whether closing the last connection writes -wal into the database and deletes it. Until the start is complete,
+    /// and when the files were replaced, it must not: they may be those of another database.
+    void let_close_change_files(bool let) {
+        ::sqlite3_db_config(database.getHandle(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, let ? 0 : 1, nullptr);
+    }
+
     SQLite::Database database;
 
 private:
@@ -136,30 +147,75 @@ private:
     std::map<std::string, SQLite::Statement, std::less<>> statements_;
 };
 
-Database::Database(const std::filesystem::path& file) {
+namespace {
+
+void check_version(const std::filesystem::path& file, int version, int tables) {
+    const std::string name = "the database " + file.string(), unchanged = ". Nothing was changed or removed. ";
+    if (version < 0 || (version == 0 && tables > 0))
+        throw Error(ErrorKind::bad_input, name + " is of another program" + unchanged +
+                                              "Let [store] folder name the folder of a store, or an empty one");
+    if (version > schema_version)
+        throw Error(ErrorKind::bad_input, name + ": its version is " + std::to_string(version) +
+                                              "; this program reads up to " + std::to_string(schema_version) +
+                                              unchanged + "Start the newer program that made it");
+}
+
+}  // namespace
+
+Database::Database(const std::filesystem::path& file, DatabaseHooks hooks) : hooks_(std::move(hooks)) {
     const std::string advice =
-        "; move it away (with its -wal and -shm) and restore a copy, or start with an empty store and send the inputs "
-        "again";
-    try {
+        ". Nothing was removed. Move it away (with its -wal and -shm), restore a copy and run `hairbaked store "
+        "accept`: "
+        "the next start then moves files that the copy does not know to lost+found. Without a copy, move the whole "
+        "folder away and start with a new one: blobs/ in the old one still holds every input under its SHA-256";
+    const auto attempt = [&](const std::function<void()>& step) {
+        try {
+            step();
+        } catch (const SQLite::Exception& error) {
+            throw Error(ErrorKind::bad_input,
+                        "the database " + file.string() + " cannot be opened: " + error.what() + advice);
+        } catch (const Error& error) {
+            throw Error(ErrorKind::bad_input,
+                        "the database " + file.string() + " is not whole: " + error.what() + advice);
+        }
+    };
+    int version = 0, tables = 0;
+    attempt([&] {
         writer_ = std::make_unique<Connection>(file, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-        writer_->prepare_file();
+        std::tie(version, tables) = writer_->version_and_tables();
+    });
+    check_version(file, version, tables);
+    if (version < schema_version && hooks_.before_upgrade) hooks_.before_upgrade(version);
+    attempt([&] {
+        writer_->prepare_file(version);
         reader_ = std::make_unique<Connection>(file, SQLite::OPEN_READONLY);
-    } catch (const SQLite::Exception& error) {
-        throw Error(ErrorKind::bad_input,
-                    "the database " + file.string() + " cannot be opened: " + error.what() + advice);
-    } catch (const Error& error) {
-        throw Error(ErrorKind::bad_input, "the database " + file.string() + " is not whole: " + error.what() + advice);
+        reader_->rows("SELECT count(*) FROM sqlite_master", {});  // opens its files
+    });
+    const std::string real = std::filesystem::canonical(file).string();
+    pins_ = PinnedFiles({file, real + "-wal", real + "-shm"});
+}
+
+Database::~Database() {
+    try {
+        check_in_place();
+        writer_->let_close_change_files(version_ > 0);  // 0: the start was stopped
+    } catch (const std::exception&) {                   // the files stay as they are
     }
 }
 
-Database::~Database() = default;
+void Database::check_in_place() const {
+    if (hooks_.before_write) hooks_.before_write();
+    pins_.check();
+}
 
 void Database::write(const std::function<void(Sql&)>& body) {
     const auto held = lock();
+    check_in_place();
     try {
         // Rolled back by its destructor when the body throws.
         SQLite::Transaction transaction(writer_->database, SQLite::TransactionBehavior::IMMEDIATE);
         body(*writer_);
+        check_in_place();
         transaction.commit();
         ++version_;
     } catch (const SQLite::Exception& error) {

@@ -13,6 +13,8 @@
 #include <variant>
 #include <vector>
 
+#include "server/store/pinned_files.h"
+
 namespace hairbake {
 
 using SqlValue = std::variant<std::nullptr_t, std::int64_t, double, std::string>;
@@ -41,16 +43,28 @@ public:
     virtual std::vector<SqlRow> rows(std::string_view statement, const std::vector<SqlValue>& values = {}) = 0;
 };
 
+/// What the owner of a database's folder checks. Empty functions check nothing; each may throw.
+struct DatabaseHooks {
+    std::function<void(int version)> before_upgrade;  ///< before a file of an earlier version is changed; 0: no tables
+    std::function<void()> before_write;               ///< before each transaction, and again before its commit
+};
+
 /// WAL, synchronous FULL: a transaction that has returned is on the disk. Thread-safe. The locks are recursive, but
 /// transactions do not nest. Readers never wait for the writer; only the writer waits for fsync.
 class Database {
 public:
     /// Opens or makes `file` and its tables; brings a database of an earlier version to this one.
-    /// Throws Error(bad_input), telling what to do, when the file is no database, broken, or of a later version.
-    explicit Database(const std::filesystem::path& file);
+    /// Throws Error(bad_input), telling what to do, when the file is no database of the service, broken, or of a later
+    /// version.
+    explicit Database(const std::filesystem::path& file, DatabaseHooks hooks = {});
     ~Database();
 
-    /// Runs `body` in one transaction: committed when it returns, rolled back when it throws.
+    /// Throws Refusal(busy) when the file, its -wal or its -shm was moved, deleted or replaced.
+    /// Throws what the hook before_write throws.
+    void check_in_place() const;
+
+    /// Runs `body` in one transaction: committed when it returns, rolled back when it throws. Throws as
+    /// check_in_place(), too: then nothing is written.
     void write(const std::function<void(Sql&)>& body);
     /// Runs `body` on one committed state. `body` may not write and may not take lock().
     void read(const std::function<void(Sql&)>& body);
@@ -65,7 +79,9 @@ public:
 private:
     class Connection;
     std::recursive_mutex writing_, reading_;  ///< taken in this order
+    const DatabaseHooks hooks_;
     std::unique_ptr<Connection> writer_, reader_;
+    PinnedFiles pins_{{}};  ///< the files that both connections have open
     std::atomic<std::uint64_t> version_ = 0;
     bool in_read_ = false;            ///< guarded by reading_
     std::uint64_t version_read_ = 0;  ///< guarded by reading_

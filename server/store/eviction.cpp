@@ -107,7 +107,7 @@ bool evict_some(Database& database, BlobStore& store, std::vector<std::string> (
         some = !ranked.empty();
         forgotten = forget_oldest(sql, store, ranked, wanted, forget);
     });
-    if (!forgotten.blobs.empty()) store.remove(forgotten.blobs);
+    if (!forgotten.blobs.empty()) store.remove(forgotten.blobs, "the budget is used up; least recently used first");
     return some;
 }
 

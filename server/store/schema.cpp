@@ -86,7 +86,20 @@ ALTER TABLE stages ADD COLUMN handle TEXT;
 ALTER TABLE stages ADD COLUMN work_folder TEXT;
 )sql";
 
-constexpr std::array<const char*, schema_version> changes{version_1, version_2, version_3, version_4, version_5};
+// The identity of the store (store_identity.h): one row. Blobs whose removal was committed, whose files may still be
+// there. The times of a blob's file when its digest was right (nanoseconds since 1970; 0: unknown), and when its digest
+// was last checked.
+constexpr const char* version_6 = R"sql(
+CREATE TABLE store(id TEXT NOT NULL, generation INTEGER NOT NULL, accepted INTEGER NOT NULL);
+INSERT INTO store VALUES(lower(hex(randomblob(16))), 0, 0);
+CREATE TABLE removals(sha256 TEXT PRIMARY KEY, time REAL NOT NULL) WITHOUT ROWID;
+ALTER TABLE blobs ADD COLUMN mtime_ns INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE blobs ADD COLUMN ctime_ns INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE blobs ADD COLUMN checked REAL NOT NULL DEFAULT 0;
+)sql";
+
+constexpr std::array<const char*, schema_version> changes{version_1, version_2, version_3,
+                                                          version_4, version_5, version_6};
 
 }  // namespace
 

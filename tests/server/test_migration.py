@@ -1,8 +1,11 @@
 """Stores of earlier database versions: the daemon opens them, brings them to its version and serves what they hold."""
 import contextlib
 import json
+import random
+import shutil
 import sqlite3
 import tarfile
+import time
 import unittest
 from pathlib import Path
 
@@ -17,15 +20,16 @@ BACK_TO_3 = """DROP INDEX batch_bakes_by_age; ALTER TABLE batch_bakes DROP COLUM
     DROP INDEX inputs_by_blob; DROP INDEX inputs_by_thumbnail;"""
 BACK_TO_2 = "DROP TABLE bake_names;"
 BACK_TO_1 = "ALTER TABLE uploads DROP COLUMN token;"
-BACK = {4: "", 3: BACK_TO_3, 2: BACK_TO_3 + BACK_TO_2, 1: BACK_TO_3 + BACK_TO_2 + BACK_TO_1}
+BACK = {5: "", 4: "", 3: BACK_TO_3, 2: BACK_TO_3 + BACK_TO_2, 1: BACK_TO_3 + BACK_TO_2 + BACK_TO_1}
 
 
 class OldStore(Daemon):
-    """Starts on the store that data/store_4.tar.xz holds, brought back to `version`. `expected` is what its daemon answered."""
+    """Starts on the store that data/store_5.tar.xz or store_4.tar.xz holds, brought back to `version`. `expected` is what its
+    daemon answered."""
 
     def __init__(self, version=4):
         super().__init__(limits='program = "/bin/false"')  # nothing is baked
-        with tarfile.open(DATA / "store_4.tar.xz") as archive:
+        with tarfile.open(DATA / f"store_{max(version, 4)}.tar.xz") as archive:
             archive.extractall(self.path)  # our own archive
         self.expected = json.loads((self.path / "expected.json").read_text())
         self.run_sql(f"{BACK[version]} PRAGMA user_version = {version}")
@@ -80,6 +84,61 @@ class Migration(unittest.TestCase):
                 self.assertEqual(d.ask("GET", f"/v1/bakes?batch={d.expected['batch']['id']}").json, d.expected["batch_bakes"])
                 self.assertEqual(d.create_upload(b"some hair").status, 201)
 
+    def test_a_store_of_version_5_gets_an_id_at_its_first_start(self):
+        with OldStore(5) as d:
+            self.assert_serves(d)
+            words = (d.path / "store/store-id").read_text().split()
+            self.assertRegex(words[1], "^[0-9a-f]{32}$")
+            for _ in range(2):
+                d.stop()
+                with contextlib.closing(sqlite3.connect(d.path / "store/hairbake.db")) as database:
+                    self.assertEqual(database.execute("SELECT id FROM store").fetchall(), [(words[1],)])
+                d.start()
+                self.assert_serves(d)
+            self.assertFalse((d.path / "store/lost+found").exists())
+
+    def test_a_start_between_the_upgrade_and_the_id_is_repeated(self):
+        """Relative: a kill after the database was upgraded, before the file with the id was written."""
+        with OldStore(5) as d:
+            d.stop()
+            (d.path / "store/store-id").unlink()
+            d.run_sql("UPDATE store SET generation = 0")
+            d.start()
+            self.assert_serves(d)
+
+    def test_a_first_start_that_is_killed_can_be_repeated(self):
+        rng = random.Random(5)
+        with OldStore(5) as d:
+            d.stop()
+            for _ in range(10):
+                shutil.rmtree(d.path / "store")
+                with tarfile.open(DATA / "store_5.tar.xz") as archive:
+                    archive.extractall(d.path)
+                process = d.spawn()
+                time.sleep(rng.uniform(0, 0.15))
+                process.kill()
+                process.wait()
+                process.stdout.close()
+                d.start()
+                d.stop()
+                self.assertFalse((d.path / "store/lost+found").exists())
+            d.start()
+            self.assert_serves(d)
+
+    def test_files_that_a_killed_daemon_of_version_5_left_are_not_removed(self):
+        with OldStore(5) as d:
+            d.stop()
+            shutil.rmtree(d.path / "store")
+            with tarfile.open(DATA / "store_5.tar.xz") as archive:
+                archive.extractall(d.path)
+            blob, upload = "ab" + 62 * "0", 32 * "c"
+            d.blob_file(blob).write_bytes(b"without a row")
+            (d.path / "store/uploads" / upload).write_bytes(b"without a row, too")
+            d.start()
+            self.assert_serves(d)
+            found = {file.name: file.read_bytes() for file in (d.path / "store/lost+found").rglob("*") if file.is_file()}
+            self.assertEqual(found, {blob: b"without a row", upload: b"without a row, too"})
+
     def test_a_store_of_a_later_version_stops_the_start(self):
         with OldStore() as d:
             d.stop()
@@ -88,7 +147,7 @@ class Migration(unittest.TestCase):
             self.assertEqual(process.wait(PATIENCE), 3)
             process.stdout.close()
             self.assertIn("its version is 1000", (d.path / "log").read_text())
-            d.run_sql("PRAGMA user_version = 5")
+            d.run_sql("PRAGMA user_version = 6")
             d.start()
 
 

@@ -67,7 +67,7 @@ class Client:
 class Threads(unittest.TestCase):
     def stress(self, starts, before=()):
         """What the daemon logged under all clients at once, started that many times on one store."""
-        with Daemon(workers=2, limits=f'program = "{WORKER}"', listen="port = 0\nthreads = 4\nwaiting = 64",
+        with Daemon(config="scrub_s = 1", workers=2, limits=f'program = "{WORKER}"', listen="port = 0\nthreads = 4\nwaiting = 64",
                     before=[*FIXED_ADDRESSES, *before, "env", "TSAN_OPTIONS=exitcode=0"]) as d:
             for start in range(starts):
                 if start > 0:

@@ -136,11 +136,12 @@ TEST_F(RestartTest, AWorkerThatOutlivesTheDaemonIsFollowedByTheNext) {
     service.reset();
     EXPECT_FALSE(farm.jobs.at("job 0").is_stopped);
     EXPECT_TRUE(fs::exists(work_folder));
-    fs::create_directories(folder / "store/tmp/left over");  // of a worker that did not survive
+    const fs::path left_over = folder / "store/tmp" / std::string(32, 'a');
+    fs::create_directories(left_over);  // of a worker that did not survive
     boot();
     EXPECT_EQ(state(), "running");
     EXPECT_TRUE(fs::exists(work_folder / "task.json"));
-    EXPECT_FALSE(fs::exists(folder / "store/tmp/left over"));
+    EXPECT_FALSE(fs::exists(left_over));
 
     service.reset();
     write_result(work_folder, stage);  // it ends while there is no daemon

@@ -1,6 +1,7 @@
-"""Makes data/store_4.tar.xz: a store of database version 4, with the programs of the commit before version 5.
+"""Makes data/store_N.tar.xz: a store of database version N, with the programs of a commit before version N + 1.
 
-Usage: HAIRBAKE_PROGRAMS=FOLDER make_store_4.py OUTPUT. FOLDER holds hairbaked and hairbake-worker of commit 8908c4a.
+Usage: HAIRBAKE_PROGRAMS=FOLDER make_store.py OUTPUT. FOLDER holds hairbaked and hairbake-worker: of commit 8908c4a for version
+4, of fc5ecbb for version 5.
 The archive holds `store/` as that daemon left it and `expected.json`: the requests, and what the daemon answered to them.
 """
 import json

@@ -1,0 +1,106 @@
+// How BlobStore finds bytes that do not have their digest.
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "core/base/digest.h"
+#include "server/store/blob_store.h"
+#include "server/store/database.h"
+#include "server/store/refusal.h"
+
+namespace hairbake {
+namespace fs = std::filesystem;
+namespace {
+
+/// Whether the open file is the one at `path`.
+bool is_at(const fs::path& path, int descriptor) {
+    struct stat open {
+    }, there{};
+    return ::fstat(descriptor, &open) == 0 && ::stat(path.c_str(), &there) == 0 && open.st_dev == there.st_dev &&
+           open.st_ino == there.st_ino;
+}
+
+}  // namespace
+
+/// The reason why the file cannot be read may pass, so nothing is forgotten.
+void BlobStore::refuse_for_now(const std::string& digest) {
+    throw Refusal(Refused::busy, "the stored bytes of sha256:" + digest + " cannot be read now");
+}
+
+/// A folder that is missing with the file hides more files than this one, so nothing is forgotten then.
+void BlobStore::lose_if_missing(const std::string& digest, const OnLoss& on_loss) {
+    const auto held = database_.lock();  // it may have been removed and sent again meanwhile
+    const fs::path path = path_of(digest);
+    if (fs::exists(path) || !fs::exists(path.parent_path()) || !size_of(digest)) refuse_for_now(digest);
+    lose(digest, on_loss);
+    throw LostBlob(digest);
+}
+
+bool BlobStore::is_verified(const std::string& digest, const FileFacts& facts) {
+    const std::lock_guard lock(mutex_);
+    const auto verified = verified_.find(digest);
+    return verified != verified_.end() && verified->second.facts == facts;
+}
+
+void BlobStore::note_verified(const std::string& digest, const FileFacts& facts) {
+    const std::lock_guard lock(mutex_);
+    verified_[digest] = checked_[digest] = {now(), facts};
+}
+
+void BlobStore::note_check_failed(const std::string& digest) {
+    const std::lock_guard lock(mutex_);
+    checked_[digest] = {now(), FileFacts{}};
+}
+
+void BlobStore::note_other_link_removed(const std::string& digest) {
+    const std::optional<FileFacts> facts = facts_of(path_of(digest));
+    const std::lock_guard lock(mutex_);
+    const auto verified = verified_.find(digest);
+    if (!facts || verified == verified_.end()) return;
+    FileFacts& known = verified->second.facts;
+    if (known.bytes == facts->bytes && known.mtime_ns == facts->mtime_ns) known.ctime_ns = facts->ctime_ns;
+}
+
+/// The facts are taken before the bytes are read: a change meanwhile shows at the next opening.
+void BlobStore::verify(const std::string& digest, int descriptor, const OnLoss& on_loss,
+                       const std::function<void(std::size_t)>& pace) {
+    const std::optional<FileFacts> facts = facts_of(descriptor);
+    if (!facts) refuse_for_now(digest);
+    if (!pace && is_verified(digest, *facts)) return;
+    Digest found;
+    std::vector<std::byte> piece(1 << 18);
+    ssize_t count = 0;
+    for (off_t at = 0; (count = ::pread(descriptor, piece.data(), piece.size(), at)) > 0; at += count) {
+        found.add(std::span(piece).first(static_cast<std::size_t>(count)));
+        if (pace) pace(static_cast<std::size_t>(count));
+    }
+    if (count < 0) refuse_for_now(digest);
+    if (found.hex() == digest) return note_verified(digest, *facts);
+    const auto held = database_.lock();
+    if (!is_at(path_of(digest), descriptor) || !size_of(digest))
+        refuse_for_now(digest);  // replaced or removed meanwhile
+    lose(digest, on_loss);
+    throw LostBlob(digest);
+}
+
+std::vector<std::string> BlobStore::unchecked_since(double time, int most) {
+    std::vector<std::string> digests;
+    database_.read([&](Sql& sql) {
+        for (const SqlRow& row : sql.rows("SELECT sha256 FROM blobs WHERE checked < ? ORDER BY checked LIMIT ?",
+                                          {time, std::int64_t(most)}))
+            digests.push_back(row.text(0));
+    });
+    return digests;
+}
+
+void BlobStore::check_digest(const std::string& digest, const OnLoss& on_loss,
+                             const std::function<void(std::size_t)>& pace) {
+    if (!size_of(digest)) return;
+    const Descriptor file(::open(path_of(digest).c_str(), O_RDONLY | O_CLOEXEC));
+    if (!file && errno == ENOENT) lose_if_missing(digest, on_loss);
+    ::posix_fadvise(file.get(), 0, 0, POSIX_FADV_DONTNEED);  // the disk's bytes, not those that memory remembers
+    verify(digest, file.get(), on_loss, pace);
+    ::posix_fadvise(file.get(), 0, 0, POSIX_FADV_DONTNEED);
+}
+
+}  // namespace hairbake

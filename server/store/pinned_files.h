@@ -1,0 +1,30 @@
+// Notices that a file or folder was moved, deleted or replaced while the daemon has it open.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <vector>
+
+namespace hairbake {
+
+/// Which files stand at some paths, by device and inode. Immutable, so thread-safe.
+class PinnedFiles {
+public:
+    /// Remembers the files that are at `paths` now; leaves out paths at which there is none.
+    explicit PinnedFiles(const std::vector<std::filesystem::path>& paths);
+
+    /// One stat() a path.
+    /// Throws Refusal(busy), naming the path, when another file or none is at one of them.
+    void check() const;
+
+private:
+    struct Pin {
+        std::filesystem::path path;
+        dev_t device;
+        ino_t inode;
+    };
+    std::vector<Pin> pins_;
+};
+
+}  // namespace hairbake

@@ -1,0 +1,42 @@
+#include "server/store/removal_log.h"
+
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <system_error>
+
+namespace hairbake {
+namespace fs = std::filesystem;
+
+void remove_counted(const fs::path& file, FileCount& count) {
+    std::error_code unknown;
+    const std::uintmax_t bytes = fs::file_size(file, unknown);
+    if (::unlink(file.c_str()) != 0) return;
+    ++count.files;
+    count.bytes += unknown ? 0 : bytes;
+}
+
+void remove_tree_counted(const fs::path& path, FileCount& count) {
+    std::error_code error;
+    if (fs::symlink_status(path, error).type() != fs::file_type::directory) return remove_counted(path, count);
+    for (const fs::directory_entry& entry : fs::directory_iterator(path, error))
+        remove_tree_counted(entry.path(), count);
+    ::rmdir(path.c_str());
+}
+
+void log_removal(const FileCount& removed, std::string_view reason) {
+    if (removed.files > 0) spdlog::info("removed {} files of {} bytes: {}", removed.files, removed.bytes, reason);
+}
+
+void log_move(const FileCount& moved, const fs::path& folder, std::string_view reason) {
+    if (moved.files > 0)
+        spdlog::warn("moved {} files of {} bytes to {}: {}", moved.files, moved.bytes, folder.string(), reason);
+}
+
+void log_held(const FileCount& held, const fs::path& folder) {
+    if (held.files > 0)
+        spdlog::warn("{} holds {} files of {} bytes, which the budget does not count; look at them and delete them",
+                     folder.string(), held.files, held.bytes);
+}
+
+}  // namespace hairbake

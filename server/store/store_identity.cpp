@@ -1,0 +1,135 @@
+#include "server/store/store_identity.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <fstream>
+#include <span>
+#include <utility>
+
+#include "core/base/error.h"
+#include "server/store/database.h"
+#include "server/store/file_system.h"
+
+namespace hairbake {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* is_untouched = ". Nothing was changed or removed. ";
+constexpr const char* advice_to_accept =
+    "If both belong together all the same, run `hairbaked store accept`: the next start then moves files that the "
+    "database does not know to lost+found";
+
+}  // namespace
+
+/// Nothing when there is no file.
+std::optional<StoreIdentity::Mark> StoreIdentity::read_mark(const fs::path& folder) {
+    const fs::path file = folder / file_name;
+    if (!fs::exists(file)) return std::nullopt;
+    std::ifstream stream(file);
+    std::string id_word, generation_word;
+    Mark mark;
+    stream >> id_word >> mark.id >> generation_word >> mark.generation;
+    if (!stream || id_word != "id" || generation_word != "generation" || mark.id.size() != 32)
+        throw Error(ErrorKind::bad_input, "the file " + file.string() + " cannot be read or is no id of a store" +
+                                              is_untouched + advice_to_accept);
+    return mark;
+}
+
+/// The file appears whole or not at all.
+void StoreIdentity::write_mark(const fs::path& folder, const Mark& mark) {
+    const fs::path file = folder / file_name, next = folder / "tmp" / random_name();
+    const std::string text = "id " + mark.id + "\ngeneration " + std::to_string(mark.generation) + "\n";
+    try {
+        const Descriptor written(::open(next.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0640));
+        if (!written) throw_store_error(next, errno);
+        write_all(written.get(), std::as_bytes(std::span(text)), next);
+        sync_file(written.get(), next);
+        if (::rename(next.c_str(), file.c_str()) != 0) throw_store_error(file, errno);
+    } catch (...) {
+        ::unlink(next.c_str());
+        throw;
+    }
+    sync_folder(folder);
+}
+
+StoreIdentity::StoreIdentity(fs::path folder, Database& database, const std::string& expected_id)
+    : folder_(std::move(folder)), database_(database) {
+    Mark row;
+    database_.read([&](Sql& sql) {
+        const SqlRow stored = sql.rows("SELECT id, generation, accepted FROM store").at(0);
+        row = {stored.text(0), stored.integer(1)};
+        accepted_ = stored.integer(2) != 0;
+    });
+    if (!expected_id.empty() && row.id != expected_id)
+        throw Error(ErrorKind::bad_input, "the database in " + folder_.string() + " is of the store " + row.id +
+                                              "; allowed is " + expected_id + " ([store] id)" + is_untouched);
+    compare(row);
+    id_ = row.id;
+    const std::optional<Mark> mark = read_mark(folder_);
+    if (!mark) write_mark(folder_, row);
+    generation_ = mark ? mark->generation : row.generation;
+}
+
+void StoreIdentity::compare(const Mark& row) const {
+    const std::optional<Mark> mark = read_mark(folder_);
+    const std::string folder = folder_.string();
+    const auto stop = [](const std::string& found, const std::string& advice) {
+        throw Error(ErrorKind::bad_input, found + is_untouched + advice);
+    };
+    const auto number = [](std::int64_t value) { return std::to_string(value); };
+    if (!mark && row.generation == 0) return;  // a new store, or the first start of a store that had no id
+    if (!mark)
+        stop("the folder " + folder + " lacks the file " + file_name + " of the store " + row.id +
+                 ", to which its database belongs",
+             std::string("Is it the right folder, and is its disk mounted? ") + advice_to_accept);
+    else if (mark->id != row.id)
+        stop("the folder " + folder + " is of the store " + mark->id + "; its database is of the store " + row.id,
+             std::string("Put each database into the folder of its own store. ") + advice_to_accept);
+    else if (row.generation < mark->generation)
+        stop("the database in " + folder + " is older than the store: its generation is " + number(row.generation) +
+                 "; that of the folder is " + number(mark->generation),
+             advice_for_copy);
+    else if (row.generation > mark->generation + 1)
+        stop("the folder " + folder + " is older than its database: its generation is " + number(mark->generation) +
+                 "; that of the database is " + number(row.generation),
+             std::string("Put the newer folder back. ") + advice_to_accept);
+}
+
+/// The next generation is counted from the file's, so a failure to write the file does not let the database run ahead.
+void StoreIdentity::advance() {
+    const std::lock_guard lock(mutex_);
+    const std::int64_t next = generation_ + 1;
+    database_.write([&](Sql& sql) { sql.run("UPDATE store SET generation = ?, accepted = 0", {next}); });
+    version_ = database_.version();
+    write_mark(folder_, {id_, next});
+    generation_ = next;
+}
+
+void StoreIdentity::advance_if_changed() {
+    {
+        const std::lock_guard lock(mutex_);
+        if (version_ == database_.version()) return;
+    }
+    advance();
+}
+
+void StoreIdentity::accept(const fs::path& folder, Database& database) {
+    std::optional<Mark> mark;
+    try {
+        mark = read_mark(folder);
+    } catch (const Error&) {  // a file that cannot be read is replaced
+    }
+    Mark both;
+    database.write([&](Sql& sql) {
+        const SqlRow row = sql.rows("SELECT id, generation FROM store").at(0);
+        both = {mark ? mark->id : row.text(0), std::max(row.integer(1), mark ? mark->generation : 0) + 1};
+        sql.run("UPDATE store SET id = ?, generation = ?, accepted = 1", {both.id, both.generation});
+    });
+    write_mark(folder, both);
+}
+
+}  // namespace hairbake

@@ -1,0 +1,273 @@
+"""What happens to the store while the daemon runs: files that are moved or replaced, bytes that rot, removals in the log."""
+import contextlib
+import json
+import os
+import re
+import shutil
+import sqlite3
+import time
+import unittest
+from pathlib import Path
+
+from harness import PATIENCE, TUS, Daemon, hair_bytes, quick_request, sha256
+
+
+class Replaced(unittest.TestCase):
+    """Fault: the database file was deleted, and the daemon went on answering 2xx to writes that no restart would find."""
+
+    def obstacles(self):
+        """By name, what is done to the store's folder; returns what undoes it."""
+        def away(name):
+            def move(store):
+                (store / name).rename(store.parent / "aside")
+                return lambda: (store.parent / "aside").rename(store / name)
+            return move
+
+        def copied(name):
+            def copy(store):
+                path = store / name
+                path.rename(store.parent / "aside")
+                (shutil.copytree if (store.parent / "aside").is_dir() else shutil.copy)(store.parent / "aside", path)
+                return lambda: ((shutil.rmtree if path.is_dir() else os.unlink)(path), (store.parent / "aside").rename(path))
+            return copy
+
+        found = {f"{name} is gone": away(name) for name in ("hairbake.db", "hairbake.db-wal", "hairbake.db-shm", "blobs", "tmp",
+                                                            "uploads", "lock", "")}
+        found |= {f"{name or 'the folder'} is replaced by a copy": copied(name) for name in ("hairbake.db", "blobs", "")}
+        return found
+
+    def writes(self, d):
+        """Requests that must write, by name; none repeats what is stored."""
+        data = os.urandom(300)
+        return {"PUT blob": lambda: d.ask("PUT", f"/v1/blobs/{sha256(data)}", data),
+                "PUT name": lambda: d.ask("PUT", "/v1/names/mesh/x", {"sha256": d.kept}),
+                "POST bake": lambda: d.ask("POST", "/v1/bakes", quick_request(d.kept, transmittance={"voxels": 33})),
+                "POST upload": lambda: d.create_upload(data),
+                "PATCH upload": lambda: d.append(d.upload, 0, b"half"),
+                "DELETE upload": lambda: d.ask("DELETE", d.upload, headers=TUS)}
+
+    def test_readyz_and_writes_fail_at_once_and_what_is_put_back_heals(self):
+        with Daemon() as d:
+            d.kept = d.put(hair_bytes())
+            d.upload = d.create_upload(b"half an upload").headers["Location"]
+            store = d.path / "store"
+            for name, spoil in self.obstacles().items():
+                with self.subTest(name):
+                    self.assertEqual(d.ask("GET", "/readyz").status, 200)
+                    heal = spoil(store)
+                    ready = d.ask("GET", "/readyz")
+                    self.assertEqual((ready.status, ready.json["type"]), (503, "urn:hairbake:problem:not-ready"))
+                    self.assertRegex(ready.json["detail"], "was (moved or deleted|replaced) while the daemon works with it")
+                    for write, ask in self.writes(d).items():
+                        reply = ask()
+                        self.assertEqual((reply.status, reply.headers["Retry-After"]), (503, "5"), (write, reply.body))
+                        self.assertIn(str(store), reply.json["detail"], write)
+                    self.assertEqual(d.ask("HEAD", d.upload, headers=TUS).status, 200)  # what is read may be read
+                    heal()
+                    self.assertEqual(d.ask("GET", "/readyz").status, 200)
+            offset = int(d.ask("HEAD", d.upload, headers=TUS).headers["Upload-Offset"])
+            for write, ask in {name: ask for name, ask in self.writes(d).items() if "PATCH" not in name}.items():
+                self.assertIn(ask().status, (200, 201, 202, 204), write)
+            self.assertEqual(offset, 0)
+
+    def test_a_database_that_is_put_there_while_the_daemon_ends_keeps_its_log(self):
+        """Relative: the last connection that closes deletes the log at its path, no matter whose it is."""
+        with Daemon() as d:
+            kept = d.put(b"kept")
+            d.stop()
+            store = d.path / "store"
+            other = d.path / "other"
+            shutil.copytree(store, other)
+            connection = sqlite3.connect(other / "hairbake.db")
+            connection.execute("INSERT INTO names VALUES('mesh', 'in the log', 1, ?, '', '', 0)", (kept,))
+            connection.commit()
+            d.start()
+            for end in ("", "-wal", "-shm"):
+                (store / f"hairbake.db{end}").unlink()
+                shutil.copy(other / f"hairbake.db{end}", store / f"hairbake.db{end}")
+            whole = (store / "hairbake.db-wal").read_bytes()
+            self.assertEqual(d.stop()[0], 0)
+            self.assertEqual((store / "hairbake.db-wal").read_bytes(), whole)
+            connection.close()
+
+    def test_blobs_are_not_forgotten_while_their_folder_is_away(self):
+        with Daemon() as d:
+            hair = d.put(hair_bytes())
+            bake = d.ask("POST", "/v1/bakes", quick_request(hair)).json["id"]
+            self.assertEqual(d.wait(bake)["state"], "done")
+            for name in ("blobs", f"blobs/{hair[:2]}", ""):
+                folder, aside = d.path / "store" / name, d.path / "aside"
+                folder.rename(aside)
+                self.assertEqual(d.ask("GET", f"/v1/blobs/{hair}").status, 503)
+                aside.rename(folder)
+                self.assertEqual(d.ask("GET", f"/v1/blobs/{hair}").body, hair_bytes())
+
+    def test_a_bake_whose_end_cannot_be_written_goes_on_when_the_database_is_back(self):
+        with Daemon() as d:
+            hair = d.put(hair_bytes(strands=400, points=40))
+            bake = d.ask("POST", "/v1/bakes", quick_request(hair, transmittance={"directions": 512, "voxels": 96})).json["id"]
+            database, aside = d.path / "store/hairbake.db", d.path / "aside"
+            database.rename(aside)
+            d.wait_for_log("was moved or deleted while the daemon works with it")
+            aside.rename(database)
+            self.assertEqual(d.wait(bake)["state"], "done")
+
+
+def rewrite(file, data):
+    """Other bytes in place, with the old mtime. Time must have passed since the last change, else ctime is the same."""
+    before = file.stat()
+    while file.stat().st_ctime_ns == before.st_ctime_ns:
+        file.write_bytes(data)
+        os.utime(file, ns=(before.st_atime_ns, before.st_mtime_ns))
+    assert file.stat().st_mtime_ns == before.st_mtime_ns
+
+
+class Rot(unittest.TestCase):
+    """Fault: a blob was verified once after the start; a byte that rotted later was served."""
+
+    def spoiled(self, data):
+        flipped = bytes([data[0] ^ 1]) + data[1:]
+        return {"a byte": flipped, "cut": data[:-1], "longer": data + b"x", "empty": b""}
+
+    def test_bytes_that_change_after_they_were_served_are_not_served_again(self):
+        with Daemon() as d:
+            for name in self.spoiled(b"xx"):
+                with self.subTest(name):
+                    data = os.urandom(5000)
+                    digest = d.put(data)
+                    self.assertEqual(d.ask("GET", f"/v1/blobs/{digest}").body, data)
+                    wrong = self.spoiled(data)[name]
+                    rewrite(d.blob_file(digest), wrong)
+                    reply = d.ask("GET", f"/v1/blobs/{digest}")
+                    self.assertEqual((reply.status, reply.headers["Content-Type"]), (503, "application/problem+json"))
+                    self.assertEqual(d.ask("HEAD", f"/v1/blobs/{digest}").status, 404)
+                    self.assertIn(wrong, [file.read_bytes() for file in (d.path / "store/lost+found").rglob(digest)])
+                    self.assertEqual(d.put(data), digest)
+                    self.assertEqual(d.ask("GET", f"/v1/blobs/{digest}").body, data)
+
+    def test_a_result_that_changes_after_it_was_served_is_baked_again(self):
+        with Daemon() as d:
+            bake = d.ask("POST", "/v1/bakes", quick_request(d.put(hair_bytes()))).json["id"]
+            file = next(f for f in d.wait(bake)["files"] if f["name"] == "transmittance.npy")
+            right = d.ask("GET", file["href"]).body
+            rewrite(d.blob_file(file["sha256"]), right[:-1] + bytes([right[-1] ^ 1]))
+            self.assertEqual(d.ask("GET", file["href"]).status, 503)
+            self.assertEqual(d.wait(bake)["state"], "done")
+            self.assertEqual(d.ask("GET", file["href"]).body, right)
+
+    def test_bytes_that_changed_are_replaced_when_they_are_sent_again(self):
+        with Daemon() as d:
+            data = os.urandom(5000)
+            digest = d.put(data)
+            rewrite(d.blob_file(digest), self.spoiled(data)["a byte"])
+            self.assertEqual(d.ask("PUT", f"/v1/blobs/{digest}", data).status, 200)
+            self.assertEqual(d.ask("GET", f"/v1/blobs/{digest}").body, data)
+
+    def test_a_file_that_was_touched_and_has_its_bytes_stays(self):
+        with Daemon() as d:
+            data = os.urandom(5000)
+            digest = d.put(data)
+            rewrite(d.blob_file(digest), data)
+            os.utime(d.blob_file(digest))
+            d.blob_file(digest).chmod(0o600)
+            self.assertEqual(d.ask("GET", f"/v1/blobs/{digest}").body, data)
+            self.assertFalse((d.path / "store/lost+found").exists())
+
+    def test_the_scrub_finds_what_nobody_asks_for(self):
+        with Daemon(config="scrub_s = 1") as d:
+            hair = d.put(hair_bytes())
+            bake = d.ask("POST", "/v1/bakes", quick_request(hair)).json["id"]
+            result = next(f for f in d.wait(bake)["files"] if f["name"] == "transmittance.npy")["sha256"]
+            missing, good = d.put(os.urandom(3000)), d.put(os.urandom(3000))
+            spoiled = d.put(os.urandom(3000))
+            rewrite(d.blob_file(spoiled), b"x" * 3000)
+            right = d.blob_file(result).read_bytes()
+            rewrite(d.blob_file(result), b"x" + right[1:])
+            d.blob_file(missing).unlink()
+            for digest in (spoiled, result, missing):
+                d.wait_for_log(f"the stored bytes of sha256:{digest} were lost or spoiled")
+            for digest, status in ((spoiled, 404), (missing, 404), (good, 200), (hair, 200)):
+                self.assertEqual(d.ask("HEAD", f"/v1/blobs/{digest}").status, status)
+            self.assertEqual(d.wait(bake)["state"], "done")
+            self.assertEqual(d.ask("GET", f"/v1/blobs/{result}").body, right)  # baked again
+            self.assertNotIn(good, (d.path / "log").read_text())
+
+    def test_the_scrub_can_be_switched_off_and_records_its_checks(self):
+        def checks(d):
+            with contextlib.closing(sqlite3.connect(d.path / "store/hairbake.db")) as database:
+                return dict(database.execute("SELECT sha256, checked FROM blobs"))
+
+        with Daemon(config="scrub_s = 0") as d:
+            digest = d.put(b"data")
+            d.stop()
+            before = checks(d)
+            d.config = "scrub_s = 1"
+            d.start()
+            end = time.monotonic() + PATIENCE
+            while checks(d)[digest] == before[digest] and time.monotonic() < end:
+                time.sleep(0.1)
+            self.assertGreater(checks(d)[digest], before[digest])
+
+
+class RemovalLog(unittest.TestCase):
+    """Each removal of a file of the store is a line of the log with the number of files and bytes."""
+
+    def removals(self, d):
+        """(files, bytes, reason) of each line."""
+        messages = [json.loads(line)["message"] for line in (d.path / "log").read_text().splitlines() if line.startswith("{")]
+        found = [re.fullmatch(r"removed (\d+) files of (\d+) bytes: (.*)", message) for message in messages]
+        return [(int(m[1]), int(m[2]), m[3]) for m in found if m]
+
+    def test_every_reason_is_counted(self):
+        with Daemon(config="budget_mb = 1\nblob_mb = 1\nupload_lifetime_s = 1000") as d:
+            first = os.urandom(700_000)
+            d.put(first)
+            hair = d.put(hair_bytes())
+            self.assertEqual(d.ask("POST", "/v1/models", {"sha256": hair}).status, 201)
+            self.assertEqual(d.ask("DELETE", f"/v1/models/{hair}").status, 204)
+            data = b"an upload"
+            upload = d.create_upload(data).headers["Location"]
+            self.assertEqual(d.append(upload, 0, data[:4]).status, 204)
+            self.assertEqual(d.ask("DELETE", upload, headers=TUS).status, 204)
+            upload = d.create_upload(data).headers["Location"]
+            self.assertEqual(d.append(upload, 0, data).status, 204)
+            upload = d.create_upload(data, digest=sha256(b"other")).headers["Location"]
+            self.assertEqual(d.append(upload, 0, data).status, 422)
+            self.assertEqual(self.removals(d), [(1, len(hair_bytes()), "the model was deleted on request"),
+                                                (1, 4, "the upload was deleted on request"),
+                                                (1, len(data), "the upload became a blob, which keeps the bytes"),
+                                                (1, len(data), "the upload's digest is wrong")])
+
+    def test_results_that_make_room_are_counted(self):
+        with Daemon(config="budget_mb = 1\nblob_mb = 1") as d:
+            hair = d.put(hair_bytes())
+            bake = d.ask("POST", "/v1/bakes", quick_request(hair)).json["id"]
+            files = d.wait(bake)["files"][1:]
+            for number in range(2):  # more than what is left without the results
+                blob = d.put(os.urandom((1 << 20) // 2 - 9000))
+                d.ask("PUT", f"/v1/names/mesh/{number}", {"sha256": blob})
+            self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}").status, 404)
+            self.assertIn((len({f["sha256"] for f in files}), sum({f["sha256"]: f["bytes"] for f in files}.values()),
+                           "the budget is used up; least recently used first"), self.removals(d))
+
+    def test_a_removal_that_a_kill_interrupted_is_completed_and_a_blob_that_came_again_stays(self):
+        """Relative: files without a row that may go, and files without a row that may not."""
+        with Daemon() as d:
+            removed, again = os.urandom(800), os.urandom(900)
+            for data in (removed, again):
+                d.put(data)
+            d.stop()
+            with contextlib.closing(sqlite3.connect(d.path / "store/hairbake.db")) as database, database:
+                for data in (removed, again):
+                    database.execute("DELETE FROM blobs WHERE sha256 = ?", (sha256(data),))
+                    database.execute("INSERT INTO removals VALUES(?, ?)", (sha256(data), time.time()))
+            time.sleep(0.1)  # so that the file is younger than its removal
+            d.blob_file(sha256(again)).unlink()
+            d.blob_file(sha256(again)).write_bytes(again)
+            d.start()
+            self.assertEqual(self.removals(d), [(1, 800, "their blobs were removed before the daemon ended")])
+            self.assertEqual([file.read_bytes() for file in (d.path / "store/lost+found").rglob(sha256(again))], [again])
+
+
+if __name__ == "__main__":
+    unittest.main()
