@@ -144,7 +144,7 @@ TEST(PreviewSheet, ShowsAtMost36OfManyMapsAndSurvivesBlackAndEmptyResults) {
     result.hair = HairModel{};
     result.hair->strand_begin = {0};
     test_support::transmittance_of(result).arrays[0].values.clear();
-    test_support::error_bar_of(result).vertices = 0;
+    test_support::error_bar_of(result).outside.vertices = 0;
     std::vector<std::string> warnings;
     const WrittenFile file = write_preview(result, folder / "", warnings);
     EXPECT_LT(file.shape.at(0), 2200u);
