@@ -1,8 +1,11 @@
 // Computes A, the other arrays that the request asks for, and A's error bar from the hair in memory.
+#include <cstdio>
+#include <iterator>
 #include <numeric>
 #include <optional>
 
 #include "core/base/naming_file.h"
+#include "core/hair/strand_warnings.h"
 #include "core/output/result_files.h"
 #include "core/reference/tracer.h"
 #include "core/stages/stage_table.h"
@@ -66,6 +69,33 @@ void add_arrays(Transmittance& baked, const BakeRequest& request, StagePart& par
             part.arrays.push_back({&kind, components, std::move(values_of(baked, kind))});
 }
 
+/// A sentence where the error bar is large, or tells little.
+std::vector<std::string> error_bar_warnings(const ErrorBar& bar) {
+    constexpr double large = 0.05;
+    constexpr std::uint32_t notable = 20;  // one in so many vertices inside other strands
+    const std::uint32_t drawn = bar.outside.vertices + bar.inside_strand;
+    std::vector<std::string> warnings;
+    char text[200];
+    if (bar.outside.rmse > large) {
+        std::snprintf(text, sizeof text,
+                      "the error of A is large: RMSE %.3f, bias %+.3f, against traced strands; "
+                      "transmittance.method = trace is exact but slow",
+                      bar.outside.rmse, bar.outside.bias);
+        warnings.emplace_back(text);
+    }
+    if (drawn > 0 && bar.outside.vertices == 0)
+        warnings.emplace_back("the error of A is not known: every vertex drawn lies inside another strand");
+    else if (bar.inside_strand * notable > drawn)
+        warnings.push_back(std::to_string(bar.inside_strand) + " of " + std::to_string(drawn) +
+                           " vertices drawn lie inside other strands, where the traced A is 0: are the widths too "
+                           "large? strand.width_scale makes them smaller");
+    return warnings;
+}
+
+void append(std::vector<std::string>& all, std::vector<std::string> more) {
+    std::move(more.begin(), more.end(), std::back_inserter(all));
+}
+
 }  // namespace
 
 void run_transmittance_stage(StageContext& context, StagePart& part) {
@@ -85,11 +115,13 @@ void run_transmittance_stage(StageContext& context, StagePart& part) {
         facts.degenerate_segments = strands.degenerate_segment_count;
     });
     part.warnings = std::move(baked.warnings);
+    append(part.warnings, strand_warnings(context.inputs.strands()));
     if (settings.reference_vertices > 0)
         context.clock.run("reference", [&](Progress& progress) {
             ProgressPart building = progress.part(0, 0.5), tracing = progress.part(0.5, 1);
             if (!scene) scene.emplace(context.inputs.strands(), building, context.inputs.occluder());
             facts.error_bar = measure_error(*scene, baked.average, settings.reference_vertices, settings.seed, tracing);
+            append(part.warnings, error_bar_warnings(*facts.error_bar));
         });
     facts.directions = baked.directions;
     facts.voxel_size = baked.voxel_size;
