@@ -31,10 +31,11 @@ struct Settings {
     // [store]
     std::filesystem::path store = "store";
     std::uint64_t budget_bytes = 200ull << 30;
-    std::uint64_t blob_bytes = 4ull << 30;  ///< limit of one blob or upload
-    double upload_lifetime_s = 24 * 3600;   ///< of an upload that receives nothing
-    int open_uploads = 256;                 ///< unfinished uploads of one token
-    double keep_failed_s = 30 * 86400;      ///< how long failed and cancelled bakes and ended batches are kept
+    std::uint64_t keep_free_bytes = 1ull << 30;  ///< of the disk, that uploads leave free
+    std::uint64_t blob_bytes = 4ull << 30;       ///< limit of one blob or upload
+    double upload_lifetime_s = 24 * 3600;        ///< of an upload that receives nothing
+    int open_uploads = 256;                      ///< unfinished uploads of one token
+    double keep_failed_s = 30 * 86400;           ///< how long failed and cancelled bakes and ended batches are kept
     // [workers]
     std::string runner = "local";  ///< of runner_names()
     std::filesystem::path worker;  ///< hairbake-worker; by default beside the daemon

@@ -19,7 +19,7 @@ struct ReceivedBlob {
 
 /// Streams the body into the store.
 ReceivedBlob receive_blob(Service& service, const HttpRequest& request, const std::string& expected) {
-    const std::unique_ptr<IncomingFile> file = service.receive(request.content_length.value_or(0), expected);
+    const std::unique_ptr<IncomingFile> file = service.receive(request.content_length, expected);
     request.read_body([&](std::span<const std::byte> bytes) { file->add(bytes); });
     const bool fresh = service.store_blob(*file, expected);
     return {file->digest(), file->bytes(), fresh};

@@ -81,7 +81,7 @@ void Catalog::inspect(const std::string& kind, const std::string& digest) {
     const fs::path picture = folder.path() / "thumbnail.png";
     const std::string thumbnail = digest_of_file(picture);
     const auto held = database_.lock();  // no eviction may come between blob and row
-    store_.adopt(picture, thumbnail);
+    store_.adopt(picture, thumbnail, Origin::made);
     database_.write([&](Sql& sql) {
         sql.run("INSERT OR IGNORE INTO inputs(kind, sha256, facts, thumbnail, created) VALUES(?, ?, ?, ?, ?)",
                 {kind, digest, outcome.facts, thumbnail, now()});

@@ -21,8 +21,8 @@
 #include "server/jobs/work_folder.h"
 #include "server/store/blob_store.h"
 #include "server/store/database.h"
-#include "server/store/eviction.h"
 #include "server/store/refusal.h"
+#include "server/store/room.h"
 
 namespace hairbake {
 namespace fs = std::filesystem;
@@ -65,9 +65,9 @@ std::string log_text(const Outcome& outcome) {
 
 }  // namespace
 
-WorkerPool::WorkerPool(Queue& queue, Runner& runner, Database& database, BlobStore& store,
+WorkerPool::WorkerPool(Queue& queue, Runner& runner, Database& database, BlobStore& store, Room& room,
                        const WorkerPoolSettings& settings)
-    : queue_(queue), runner_(runner), database_(database), store_(store), settings_(settings) {
+    : queue_(queue), runner_(runner), database_(database), store_(store), room_(room), settings_(settings) {
     for (int i = 0; i < settings_.workers; ++i) threads_.emplace_back([this] { work(); });
 }
 
@@ -78,7 +78,7 @@ void WorkerPool::work() {
             const std::optional<ClaimedStage> stage = queue_.claim();
             if (!stage) return;
             run_to_the_end(*stage);
-            evict(database_, store_, settings_.budget);
+            room_.trim();
         } catch (const std::exception& error) {  // the database cannot be written
             spdlog::error("a thread of the worker pool: {}", error.what());
             std::this_thread::sleep_for(retry_after);
@@ -206,6 +206,14 @@ std::string WorkerPool::checked_manifest(const ClaimedStage& stage, const fs::pa
     return text;
 }
 
+/// Bytes by which the store grows with a result.
+std::uint64_t WorkerPool::new_bytes(const std::vector<StageFile>& files, const fs::path& folder) {
+    std::uint64_t bytes = 0;
+    for (const StageFile& file : files)
+        if (!store_.size_of(file.sha256)) bytes += fs::file_size(folder / file.name);
+    return bytes;
+}
+
 /// A worker is not believed: key and digests are checked before its files become blobs.
 void WorkerPool::store_result(const ClaimedStage& stage, std::unique_ptr<WorkFolder> work) {
     const fs::path folder = work->path() / "result";
@@ -219,7 +227,8 @@ void WorkerPool::store_result(const ClaimedStage& stage, std::unique_ptr<WorkFol
         files.push_back({name, digest, entry.at("bytes").get<std::uint64_t>()});
     }
     const auto held = database_.lock();  // no eviction may come between the blobs and the rows that refer to them
-    for (const StageFile& file : files) store_.adopt(folder / file.name, file.sha256);
+    room_.make_room(new_bytes(files, folder));
+    for (const StageFile& file : files) store_.adopt(folder / file.name, file.sha256, Origin::made);
     work.reset();  // before anybody learns that the stage is done
     queue_.done(stage, files, manifest);
 }

@@ -15,21 +15,23 @@ namespace hairbake {
 class BlobStore;
 class Database;
 class Queue;
+class Room;
 class Runner;
 class WorkFolder;
 struct ClaimedStage;
 struct Outcome;
+struct StageFile;
 
 struct WorkerPoolSettings {
-    std::string runner;        ///< name of the runner, stored with its handles
-    std::uint64_t budget = 0;  ///< of the store, in bytes
-    int workers = 1;           ///< at once
-    int threads = 1;           ///< of each worker
+    std::string runner;  ///< name of the runner, stored with its handles
+    int workers = 1;     ///< at once
+    int threads = 1;     ///< of each worker
 };
 
 class WorkerPool {
 public:
-    WorkerPool(Queue& queue, Runner& runner, Database& database, BlobStore& store, const WorkerPoolSettings& settings);
+    WorkerPool(Queue& queue, Runner& runner, Database& database, BlobStore& store, Room& room,
+               const WorkerPoolSettings& settings);
     /// Queue::stop() comes first.
     ~WorkerPool();
 
@@ -42,12 +44,14 @@ private:
     std::string task_for(const ClaimedStage& stage);
     void remove_spoiled_inputs(const std::vector<std::string>& digests);
     std::string checked_manifest(const ClaimedStage& stage, const std::filesystem::path& folder);
+    std::uint64_t new_bytes(const std::vector<StageFile>& files, const std::filesystem::path& folder);
     void store_result(const ClaimedStage& stage, std::unique_ptr<WorkFolder> work);
 
     Queue& queue_;
     Runner& runner_;
     Database& database_;
     BlobStore& store_;
+    Room& room_;
     const WorkerPoolSettings settings_;
     std::vector<std::jthread> threads_;
 };

@@ -88,7 +88,7 @@ void BlobStore::check(IncomingFile& file, const std::string& expected) {
                       "sha256");
 }
 
-bool BlobStore::adopt(const fs::path& file, const std::string& digest) {
+bool BlobStore::adopt(const fs::path& file, const std::string& digest, Origin origin) {
     const auto held = database_.lock();
     const bool known = size_of(digest).has_value();
     // Stored bytes that were not verified since the start may be spoiled; those of `file` are good.
@@ -98,13 +98,22 @@ bool BlobStore::adopt(const fs::path& file, const std::string& digest) {
         sync_folder(path_of(digest).parent_path());
         database_.write([&](Sql& sql) {
             sql.run("INSERT OR IGNORE INTO blobs VALUES(?, ?, ?, ?)", {digest, bytes, now(), now()});
+            if (origin == Origin::sent) sql.run("INSERT OR IGNORE INTO sent_blobs VALUES(?)", {digest});
         });
         if (!known) total_bytes_ += static_cast<std::uint64_t>(bytes);
         const std::lock_guard lock(mutex_);
         verified_.insert(digest);
+    } else if (origin == Origin::sent && !is_sent(digest)) {  // a result that a client sends as an input
+        database_.write([&](Sql& sql) { sql.run("INSERT OR IGNORE INTO sent_blobs VALUES(?)", {digest}); });
     }
     touch(digest);
     return !known;
+}
+
+bool BlobStore::is_sent(const std::string& digest) {
+    bool sent = false;
+    database_.read([&](Sql& sql) { sent = !sql.rows("SELECT 1 FROM sent_blobs WHERE sha256 = ?", {digest}).empty(); });
+    return sent;
 }
 
 OpenBlob BlobStore::open(const std::string& digest, const OnLoss& on_loss) {

@@ -36,6 +36,9 @@ public:
         : std::runtime_error("the stored bytes of sha256:" + digest + " were lost or spoiled") {}
 };
 
+/// Where a blob's bytes come from: a client sent them, or a worker made them.
+enum class Origin { sent, made };
+
 struct OpenBlob {
     Descriptor file;
     std::uint64_t bytes = 0;
@@ -67,8 +70,9 @@ public:
     static void check(IncomingFile& file, const std::string& expected);
 
     /// Makes a file a blob by renaming it; returns whether the blob is new. The caller has synced the file and checked
-    /// its digest. A stored blob that was not verified since the start is replaced.
-    bool adopt(const std::filesystem::path& file, const std::string& digest);
+    /// its digest. A stored blob that was not verified since the start is replaced. A blob that a client sent once stays
+    /// one that is never evicted.
+    bool adopt(const std::filesystem::path& file, const std::string& digest, Origin origin);
 
     /// Opens a blob; verifies its digest the first time after the start.
     /// Throws Refusal(not_found).
@@ -88,6 +92,7 @@ public:
 
 private:
     bool is_verified(const std::string& digest);
+    bool is_sent(const std::string& digest);
     void verify(const std::string& digest, int descriptor, const OnLoss& on_loss);
     [[noreturn]] static void refuse_for_now(const std::string& digest);
     [[noreturn]] void lose_if_missing(const std::string& digest, const OnLoss& on_loss);

@@ -6,7 +6,7 @@ import tarfile
 import unittest
 from pathlib import Path
 
-from harness import PATIENCE, TUS, Daemon, sha256
+from harness import PATIENCE, TUS, Daemon, hair_bytes, hdr_bytes, sha256
 
 DATA = Path(__file__).parent / "data"
 
@@ -80,6 +80,17 @@ class Migration(unittest.TestCase):
                 self.assertEqual(d.ask("GET", f"/v1/bakes?batch={d.expected['batch']['id']}").json, d.expected["batch_bakes"])
                 self.assertEqual(d.create_upload(b"some hair").status, 201)
 
+    def test_the_inputs_of_an_older_store_are_known_as_such(self):
+        """They are never evicted; results and thumbnails are no inputs."""
+        for version in BACK:
+            with self.subTest(version), OldStore(version) as d:
+                d.stop()
+                with contextlib.closing(sqlite3.connect(d.path / "store/hairbake.db")) as database:
+                    sent = {row[0] for row in database.execute("SELECT sha256 FROM sent_blobs")}
+                    self.assertEqual(sent, {sha256(data) for data in (hair_bytes(strands=30), hdr_bytes(), hdr_bytes(red=99),
+                                                                      b"no hair model")})
+                    self.assertGreater(database.execute("SELECT count(*) FROM blobs").fetchone()[0], len(sent))
+
     def test_a_store_of_a_later_version_stops_the_start(self):
         with OldStore() as d:
             d.stop()
@@ -88,7 +99,7 @@ class Migration(unittest.TestCase):
             self.assertEqual(process.wait(PATIENCE), 3)
             process.stdout.close()
             self.assertIn("its version is 1000", (d.path / "log").read_text())
-            d.run_sql("PRAGMA user_version = 5")
+            d.run_sql("PRAGMA user_version = 6")
             d.start()
 
 
