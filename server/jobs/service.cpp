@@ -11,9 +11,11 @@
 
 #include "core/base/error.h"
 #include "server/jobs/bake_request.h"
+#include "server/jobs/input_removal.h"
 #include "server/jobs/maintenance.h"
 #include "server/jobs/queue.h"
 #include "server/jobs/runner_kinds.h"
+#include "server/jobs/sent_blobs.h"
 #include "server/jobs/worker_pool.h"
 #include "server/store/database.h"
 #include "server/store/room.h"
@@ -148,6 +150,18 @@ OpenBlob Service::open_blob(const std::string& digest) try {
 } catch (const LostBlob& lost) {
     spdlog::error("{}", lost.what());
     throw Refusal(Refused::busy, std::string(lost.what()) + "; a result is baked again, an input must be sent again");
+}
+
+std::string Service::list_blobs(const std::string& cursor, int limit, bool unneeded) {
+    return list_sent_blobs(parts_->database, cursor, limit, unneeded);
+}
+
+void Service::remove_input(const std::string& kind, const std::string& digest, bool force) {
+    hairbake::remove_input(parts_->database, parts_->store, kind, digest, force);
+}
+
+void Service::remove_blob(const std::string& digest, bool force) {
+    hairbake::remove_blob(parts_->database, parts_->store, digest, force);
 }
 
 Catalog::Added Service::add_input(const std::string& kind, const std::string& digest) {

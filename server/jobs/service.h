@@ -49,6 +49,13 @@ public:
     OpenBlob open_blob(const std::string& digest);
     std::optional<std::uint64_t> blob_size(const std::string& digest);
 
+    /// As sent_blobs.h tells.
+    std::string list_blobs(const std::string& cursor, int limit, bool unneeded);
+
+    /// As input_removal.h tells; `kind` is "model" or "environment".
+    void remove_input(const std::string& kind, const std::string& digest, bool force);
+    void remove_blob(const std::string& digest, bool force);
+
     /// Catalog::add() of verified bytes. Throws as open_blob(), too.
     Catalog::Added add_input(const std::string& kind, const std::string& digest);
 
