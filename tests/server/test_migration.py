@@ -84,6 +84,10 @@ class Migration(unittest.TestCase):
                     self.assertEqual(d.wait(new)["state"], end)
                     again = d.ask("POST", "/v1/bakes", request)
                     self.assertEqual((again.status, again.json["id"]), (202 if name == "failed" else 200, new))
+            batch = d.ask("POST", "/v1/rebakes", rebake).json["id"]  # with the old bake's values of all fields
+            (bake,) = d.ask("GET", f"/v1/bakes?batch={batch}").json["bakes"]
+            self.assertEqual(d.wait(bake["id"])["state"], "done")
+            self.assertNotEqual(bake["id"], old_ids["both"])
             self.assertEqual(d.ask("POST", "/v1/rebakes?dry_run=1", rebake).json["done_bakes"], 1)
             self.assert_serves(d, only="/v1/bakes/")
 
