@@ -126,6 +126,7 @@ void read_store(Block& block, Settings& settings, const fs::path& base) {
     block.path("folder", settings.store, base);
     block.text("id", settings.store_id);
     block.number("budget_mb", settings.budget_bytes, 1, 1 << 30, 1 << 20);
+    block.number("keep_free_mb", settings.keep_free_bytes, 0, 1 << 30, 1 << 20);
     block.number("blob_mb", settings.blob_bytes, 1, 1 << 20, 1 << 20);
     block.number("upload_lifetime_s", settings.upload_lifetime_s, 1, 366 * 86400);
     block.number("open_uploads", settings.open_uploads, 1, 1'000'000);

@@ -34,11 +34,12 @@ struct Settings {
     std::filesystem::path store = "store";
     std::string store_id;  ///< of the store that must be there; empty: any, and an empty folder becomes one
     std::uint64_t budget_bytes = 200ull << 30;
-    std::uint64_t blob_bytes = 4ull << 30;  ///< limit of one blob or upload
-    double upload_lifetime_s = 24 * 3600;   ///< of an upload that receives nothing
-    int open_uploads = 256;                 ///< unfinished uploads of one token
-    double scrub_s = 7 * 86400;             ///< each blob's digest is checked once in this time; 0: never
-    double keep_failed_s = 30 * 86400;      ///< how long failed and cancelled bakes and ended batches are kept
+    std::uint64_t keep_free_bytes = 1ull << 30;  ///< of the disk, that uploads leave free
+    std::uint64_t blob_bytes = 4ull << 30;       ///< limit of one blob or upload
+    double upload_lifetime_s = 24 * 3600;        ///< of an upload that receives nothing
+    int open_uploads = 256;                      ///< unfinished uploads of one token
+    double scrub_s = 7 * 86400;                  ///< each blob's digest is checked once in this time; 0: never
+    double keep_failed_s = 30 * 86400;           ///< how long failed and cancelled bakes and ended batches are kept
     // [workers]
     std::string runner = "local";  ///< of runner_names()
     std::filesystem::path worker;  ///< hairbake-worker; by default beside the daemon

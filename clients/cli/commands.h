@@ -26,6 +26,7 @@ void add_status_command(CLI::App& app, Action& action);
 void add_wait_command(CLI::App& app, Action& action);
 void add_fetch_command(CLI::App& app, Action& action);
 void add_cancel_command(CLI::App& app, Action& action);
+void add_delete_command(CLI::App& app, Action& action);
 void add_rebake_command(CLI::App& app, Action& action);
 void add_upload_command(CLI::App& app, Action& action);
 

@@ -39,6 +39,7 @@ int main(int argc, char** argv) {
     hairbake::add_cancel_command(app, action);
     hairbake::add_rebake_command(app, action);
     hairbake::add_upload_command(app, action);
+    hairbake::add_delete_command(app, action);
     app.footer(hairbake::remote_exit_code_help());
     try {
         app.parse(argc, argv);

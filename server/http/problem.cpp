@@ -54,6 +54,14 @@ const char* title_of(int status) {
     }
 }
 
+HttpReply with_needed_by(HttpReply reply, const std::string& list) {
+    if (list.empty()) return reply;
+    Json body = Json::parse(reply.body);
+    body["needed_by"] = Json::parse(list);
+    reply.body = body.dump();
+    return reply;
+}
+
 HttpReply problem_of(const Refusal& refusal) {
     switch (refusal.why()) {
         case Refused::malformed:
@@ -63,7 +71,7 @@ HttpReply problem_of(const Refusal& refusal) {
         case Refused::not_found:
             return problem(404, "not-found", refusal.what(), refusal.field());
         case Refused::conflict:
-            return problem(409, "conflict", refusal.what(), refusal.field());
+            return with_needed_by(problem(409, "conflict", refusal.what(), refusal.field()), refusal.needed_by());
         case Refused::too_large:
             return problem(413, "too-large", refusal.what(), refusal.field());
         case Refused::too_many:

@@ -24,4 +24,7 @@ std::vector<Route> all_routes(Service& service, JsonBodies& bodies, Access& acce
 std::int64_t number_in_query(const HttpRequest& request, const std::string& name, std::int64_t low, std::int64_t high,
                              std::int64_t otherwise);
 
+/// Whether the query has the name, with any value but 0.
+bool flag_in_query(const HttpRequest& request, const std::string& name);
+
 }  // namespace hairbake

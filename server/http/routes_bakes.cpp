@@ -46,8 +46,7 @@ HttpReply get_file(Service& service, HttpRequest& request) {
 }
 
 HttpReply post_rebake(Service& service, JsonBodies& bodies, HttpRequest& request) {
-    const auto dry = request.query.find("dry_run");
-    const bool dry_run = dry != request.query.end() && dry->second != "0";
+    const bool dry_run = flag_in_query(request, "dry_run");
     const JsonBody body = bodies.read(request, "RebakeRequest");
     const Batches::Rebaked rebaked = service.batches().rebake(body.text, dry_run);
     HttpReply reply = json_reply(dry_run ? 200 : 202, rebaked.json);

@@ -19,7 +19,7 @@ struct ReceivedBlob {
 
 /// Streams the body into the store.
 ReceivedBlob receive_blob(Service& service, const HttpRequest& request, const std::string& expected) {
-    const std::unique_ptr<IncomingFile> file = service.receive(request.content_length.value_or(0), expected);
+    const std::unique_ptr<IncomingFile> file = service.receive(request.content_length, expected);
     request.read_body([&](std::span<const std::byte> bytes) { file->add(bytes); });
     const bool fresh = service.store_blob(*file, expected);
     return {file->digest(), file->bytes(), fresh};
@@ -42,6 +42,19 @@ HttpReply get_blob(Service& service, HttpRequest& request) {
     const std::string digest = request.parameters.at("sha256");
     check_digest(digest);
     return file_reply(request, service.open_blob(digest), digest, "application/octet-stream");
+}
+
+HttpReply deleted() {
+    HttpReply reply;
+    reply.status = 204;
+    return reply;
+}
+
+HttpReply delete_blob(Service& service, HttpRequest& request) {
+    const std::string digest = request.parameters.at("sha256");
+    check_digest(digest);
+    service.remove_blob(digest, flag_in_query(request, "force"));
+    return deleted();
 }
 
 /// The digest that the JSON body names.
@@ -87,11 +100,20 @@ HttpReply get_name(Service& service, HttpRequest& request) {
     return cached_json(request, service.names().get(request.parameters.at("kind"), request.parameters.at("path")));
 }
 
+/// The cursor of a list that is sorted by texts; empty for the first page.
+std::string text_cursor(const HttpRequest& request) {
+    const auto cursor = request.query.find("cursor");
+    return cursor == request.query.end() ? "" : cursor->second;
+}
+
 HttpReply list_names(Service& service, HttpRequest& request) {
     const auto limit = static_cast<int>(number_in_query(request, "limit", 1, 1000, 100));
-    const auto cursor = request.query.find("cursor");
-    return cached_json(request, service.names().list(request.parameters.at("kind"),
-                                                     cursor == request.query.end() ? "" : cursor->second, limit));
+    return cached_json(request, service.names().list(request.parameters.at("kind"), text_cursor(request), limit));
+}
+
+HttpReply list_blobs(Service& service, HttpRequest& request) {
+    const auto limit = static_cast<int>(number_in_query(request, "limit", 1, 1000, 100));
+    return cached_json(request, service.list_blobs(text_cursor(request), limit, flag_in_query(request, "unneeded")));
 }
 
 HttpReply list_inputs(Service& service, HttpRequest& request, const std::string& kind) {
@@ -105,10 +127,8 @@ HttpReply get_input(Service& service, HttpRequest& request, const std::string& k
 }
 
 HttpReply delete_input(Service& service, HttpRequest& request, const std::string& kind) {
-    service.catalog().remove(kind, request.parameters.at("sha256"));
-    HttpReply reply;
-    reply.status = 204;
-    return reply;
+    service.remove_input(kind, request.parameters.at("sha256"), flag_in_query(request, "force"));
+    return deleted();
 }
 
 /// The routes of models or of environments.
@@ -139,8 +159,10 @@ std::vector<Route> input_routes(Service& service, JsonBodies& bodies) {
         return [&service, handle](HttpRequest& request) { return handle(service, request); };
     };
     std::vector<Route> routes{
+        {"GET", "/v1/blobs", Scope::read, 0, bound(list_blobs)},
         {"PUT", "/v1/blobs/{sha256}", Scope::upload, service.settings().blob_bytes, bound(put_blob), {}, true},
         {"GET", "/v1/blobs/{sha256}", Scope::read, 0, bound(get_blob)},
+        {"DELETE", "/v1/blobs/{sha256}", Scope::upload, 0, bound(delete_blob)},
         {"PUT",
          "/v1/names/{kind}/{path...}",
          Scope::upload,

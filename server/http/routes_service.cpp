@@ -48,6 +48,11 @@ std::int64_t number_in_query(const HttpRequest& request, const std::string& name
     return static_cast<std::int64_t>(*number);
 }
 
+bool flag_in_query(const HttpRequest& request, const std::string& name) {
+    const auto found = request.query.find(name);
+    return found != request.query.end() && found->second != "0";
+}
+
 std::vector<Route> service_routes(Service& service, Access& access, Metrics& metrics) {
     return {
         {"GET", "/healthz", Scope::open, 0, [](HttpRequest&) { return json_reply(200, R"({"status":"alive"})"); }},

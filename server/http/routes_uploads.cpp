@@ -72,8 +72,6 @@ HttpReply create(Service& service, HttpRequest& request) {
     const std::uint64_t bytes = length_header(request, "Upload-Length");
     const std::string metadata = request.header("Upload-Metadata").value_or("");
     const std::string digest = metadata_value(metadata, "sha256");
-    service.uploads().check(bytes, digest, request.caller);
-    service.receive(bytes, digest);  // makes room, or refuses
     const UploadState state = service.uploads().create(bytes, digest, metadata, request.caller);
     return tus_reply(201)
         .with("Location", "/v1/uploads/" + state.id)
@@ -95,8 +93,9 @@ HttpReply append(Service& service, HttpRequest& request) {
     if (!request.header("Content-Type"))
         return problem(415, "unsupported", "Content-Type is missing; allowed is application/offset+octet-stream",
                        "Content-Type");
-    const Uploads::Appended appended = service.uploads().append(
-        request.parameters.at("id"), length_header(request, "Upload-Offset"), request.read_body);
+    const std::uint64_t offset = length_header(request, "Upload-Offset");
+    const Uploads::Appended appended =
+        service.uploads().append(request.parameters.at("id"), offset, request.content_length, request.read_body);
     HttpReply reply = tus_reply(204).with("Upload-Offset", std::to_string(appended.offset));
     if (appended.blob.empty())
         reply.with("Upload-Expires", http_date(appended.expires));

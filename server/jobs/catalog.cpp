@@ -93,7 +93,9 @@ void Catalog::inspect(const std::string& kind, const std::string& digest) {
     const fs::path picture = folder.path() / "thumbnail.png";
     const std::string thumbnail = digest_of_thumbnail(picture);
     const auto held = database_.lock();  // no eviction may come between blob and row
-    store_.adopt(picture, thumbnail);
+    if (!store_.size_of(digest))
+        throw Refusal(Refused::conflict, "the file was deleted while it was read; send it again", "sha256");
+    store_.adopt(picture, thumbnail, Origin::made);
     database_.write([&](Sql& sql) {
         sql.run("INSERT OR IGNORE INTO inputs(kind, sha256, facts, thumbnail, created) VALUES(?, ?, ?, ?, ?)",
                 {kind, digest, outcome.facts, thumbnail, now()});
@@ -139,36 +141,6 @@ std::string Catalog::thumbnail(const std::string& kind, const std::string& diges
     });
     if (found.empty()) refuse_unknown(kind, digest);
     return found;
-}
-
-void Catalog::remove(const std::string& kind, const std::string& digest) {
-    const auto held = database_.lock();
-    bool blob_needed = false;
-    database_.write([&](Sql& sql) {
-        if (sql.rows("SELECT 1 FROM inputs WHERE kind = ? AND sha256 = ?", {kind, digest}).empty())
-            refuse_unknown(kind, digest);
-        const auto live = sql.rows(
-            "SELECT b.id FROM stage_inputs i JOIN bake_stages m ON m.stage = i.stage JOIN bakes b ON b.seq = m.bake "
-            "WHERE i.sha256 = ? AND b.state IN ('queued', 'running') LIMIT 1",
-            {digest});
-        if (!live.empty())
-            throw Refusal(Refused::conflict, "the bake " + live[0].text(0) + " still needs it; cancel that first");
-        const auto name = sql.rows(
-            "SELECT path FROM names n WHERE kind = ? AND sha256 = ? AND version = (SELECT max(version) "
-            "FROM names m WHERE m.kind = n.kind AND m.path = n.path) LIMIT 1",
-            {kind, digest});
-        if (!name.empty())
-            throw Refusal(Refused::conflict,
-                          "the name " + kind + "/" + name[0].text(0) + " points at it; move that first");
-        sql.run("DELETE FROM inputs WHERE kind = ? AND sha256 = ?", {kind, digest});
-        blob_needed =
-            !sql.rows(
-                    "SELECT 1 FROM stage_files WHERE sha256 = ? UNION ALL SELECT 1 FROM inputs WHERE sha256 = ? "
-                    "UNION ALL SELECT 1 FROM inputs WHERE thumbnail = ? LIMIT 1",
-                    {digest, digest, digest})
-                 .empty();
-    });
-    if (!blob_needed) store_.remove({digest}, "the " + kind + " was deleted on request");
 }
 
 }  // namespace hairbake

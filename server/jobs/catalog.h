@@ -33,9 +33,6 @@ public:
     /// Digest of the thumbnail's blob.
     /// Throws Refusal(not_found).
     std::string thumbnail(const std::string& kind, const std::string& digest);
-    /// Removes the entry, and its blob unless a stage or another entry refers to it.
-    /// Throws Refusal(conflict) while a live bake uses it or a name points at it.
-    void remove(const std::string& kind, const std::string& digest);
 
 private:
     void inspect(const std::string& kind, const std::string& digest);

@@ -6,15 +6,20 @@
 
 #include "server/jobs/uploads.h"
 #include "server/store/blob_store.h"
-#include "server/store/eviction.h"
 #include "server/store/pruning.h"
+#include "server/store/room.h"
 #include "server/store/store_identity.h"
 
 namespace hairbake {
 
-Maintenance::Maintenance(Database& database, StoreIdentity& identity, BlobStore& store, Uploads& uploads,
-                         const MaintenanceSettings& settings)
-    : database_(database), identity_(identity), store_(store), uploads_(uploads), settings_(settings) {
+Maintenance::Maintenance(Database& database, StoreIdentity& identity, BlobStore& store, Room& room, Uploads& uploads,
+                         double keep_failed_s)
+    : database_(database),
+      identity_(identity),
+      store_(store),
+      room_(room),
+      uploads_(uploads),
+      keep_failed_s_(keep_failed_s) {
     prune_bakes();
     thread_ = std::jthread([this] { run(); });
 }
@@ -29,7 +34,7 @@ void Maintenance::stop() {
     changed_.notify_all();
 }
 
-void Maintenance::prune_bakes() { prune(database_, now() - settings_.keep_failed_s); }
+void Maintenance::prune_bakes() { prune(database_, now() - keep_failed_s_); }
 
 void Maintenance::run() {
     for (;;) try {
@@ -40,7 +45,7 @@ void Maintenance::run() {
             store_.flush_uses();
             uploads_.expire();
             prune_bakes();
-            evict(database_, store_, settings_.budget);
+            room_.trim();
             identity_.advance_if_changed();
         } catch (const std::exception& error) {
             spdlog::error("maintenance: {}", error.what());

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <condition_variable>
-#include <cstdint>
 #include <mutex>
 #include <thread>
 
@@ -10,20 +9,17 @@ namespace hairbake {
 
 class BlobStore;
 class Database;
+class Room;
 class StoreIdentity;
 class Uploads;
-
-struct MaintenanceSettings {
-    double keep_failed_s = 0;  ///< how long failed and cancelled bakes are kept
-    std::uint64_t budget = 0;  ///< of the store, in bytes
-};
 
 /// A thread that, once a minute, records the uses of blobs and the store's generation, removes expired uploads and old
 /// failed bakes, and keeps the store within its budget. Old failed bakes are removed by the constructor, too.
 class Maintenance {
 public:
-    Maintenance(Database& database, StoreIdentity& identity, BlobStore& store, Uploads& uploads,
-                const MaintenanceSettings& settings);
+    /// `keep_failed_s`: how long failed and cancelled bakes are kept.
+    Maintenance(Database& database, StoreIdentity& identity, BlobStore& store, Room& room, Uploads& uploads,
+                double keep_failed_s);
     ~Maintenance();
 
     /// Tells the thread to end; returns at once.
@@ -36,8 +32,9 @@ private:
     Database& database_;
     StoreIdentity& identity_;
     BlobStore& store_;
+    Room& room_;
     Uploads& uploads_;
-    const MaintenanceSettings settings_;
+    const double keep_failed_s_;
     std::mutex mutex_;
     std::condition_variable changed_;
     bool is_stopping_ = false;  ///< guarded by mutex_

@@ -8,13 +8,15 @@
 
 #include "core/base/error.h"
 #include "server/jobs/bake_request.h"
+#include "server/jobs/input_removal.h"
 #include "server/jobs/maintenance.h"
 #include "server/jobs/queue.h"
 #include "server/jobs/runner_kinds.h"
 #include "server/jobs/scrub.h"
+#include "server/jobs/sent_blobs.h"
 #include "server/jobs/worker_pool.h"
 #include "server/store/database.h"
-#include "server/store/eviction.h"
+#include "server/store/room.h"
 #include "server/store/store_folder.h"
 #include "server/store/store_identity.h"
 
@@ -35,6 +37,7 @@ struct Service::Parts {
           database(folder.database(), folder.hooks()),
           identity(folder.path(), database, settings.store_id),
           store(settings.store, database),
+          room(database, store, settings.store, {settings.budget_bytes, settings.keep_free_bytes}),
           runner(std::move(with)),
           inspector(make_runner(local_runner_name, runner_settings(settings))),
           queue(database, store, settings.max_crashes),
@@ -42,7 +45,7 @@ struct Service::Parts {
           batches(database, queue),
           catalog(database, store, *inspector),
           names(database),
-          uploads(database, store, settings.store / "uploads",
+          uploads(database, store, room, settings.store / "uploads",
                   {settings.upload_lifetime_s, settings.blob_bytes, settings.budget_bytes, settings.open_uploads}) {}
 
     /// The workers of an earlier daemon that still run, as far as their work folders are there.
@@ -74,13 +77,13 @@ struct Service::Parts {
             spdlog::info("{} queued stages of another version of hairbake were planned again", recovered.planned_again);
         begin_generation();
         spdlog::info("the store {} has the id {}", settings.store.string(), identity.id());
-        maintenance = std::make_unique<Maintenance>(database, identity, store, uploads,
-                                                    MaintenanceSettings{settings.keep_failed_s, settings.budget_bytes});
+        if (const auto warning = room.warning()) spdlog::warn("{}", *warning);
+        maintenance = std::make_unique<Maintenance>(database, identity, store, room, uploads, settings.keep_failed_s);
         scrub = std::make_unique<Scrub>(store, settings.scrub_s,
                                         [this](Sql& sql, const std::string& digest) { queue.blob_lost(sql, digest); });
         pool = std::make_unique<WorkerPool>(
-            queue, *runner, database, store,
-            WorkerPoolSettings{settings.runner, settings.budget_bytes, settings.workers, settings.worker_threads});
+            queue, *runner, database, store, room,
+            WorkerPoolSettings{settings.runner, settings.workers, settings.worker_threads});
     }
 
     const Settings settings;
@@ -88,6 +91,7 @@ struct Service::Parts {
     Database database;
     StoreIdentity identity;
     BlobStore store;
+    Room room;
     std::unique_ptr<Runner> runner, inspector;  ///< of stages, of inspections
     Queue queue;
     Bakes bakes;
@@ -137,24 +141,20 @@ Uploads& Service::uploads() { return parts_->uploads; }
 
 std::optional<std::uint64_t> Service::blob_size(const std::string& digest) { return parts_->store.size_of(digest); }
 
-std::unique_ptr<IncomingFile> Service::receive(std::uint64_t expected_bytes, const std::string& digest) {
-    if (expected_bytes > parts_->settings.blob_bytes)
-        throw Refusal(Refused::too_large, "the body is " + std::to_string(expected_bytes) +
-                                              " bytes long; allowed is up to " +
-                                              std::to_string(parts_->settings.blob_bytes));
+std::unique_ptr<IncomingFile> Service::receive(std::optional<std::uint64_t> bytes, const std::string& digest) {
     parts_->database.check_in_place();
-    const bool known = is_digest(digest) && parts_->store.size_of(digest);  // then the store does not grow
-    if (!known) make_room(parts_->database, parts_->store, parts_->settings.budget_bytes, expected_bytes);
-    return std::make_unique<IncomingFile>(parts_->store.incoming_folder(), parts_->settings.blob_bytes);
+    const bool is_stored = is_digest(digest) && parts_->store.size_of(digest);
+    return std::make_unique<IncomingFile>(parts_->store.incoming_folder(), parts_->settings.blob_bytes,
+                                          parts_->room.reserve(bytes, is_stored));
 }
 
-/// Makes room once more: a chunked body did not announce its size, and other files may have used the room.
 bool Service::store_blob(IncomingFile& file, const std::string& expected_digest) {
     parts_->store.check(file, expected_digest);
     const auto held = parts_->database.lock();
-    if (!parts_->store.size_of(file.digest()))
-        make_room(parts_->database, parts_->store, parts_->settings.budget_bytes, file.bytes());
-    return parts_->store.adopt(file.path(), file.digest());
+    if (!parts_->store.size_of(file.digest())) file.count();  // it may have been stored when the body began
+    const bool is_new = parts_->store.adopt(file.path(), file.digest(), Origin::sent);
+    file.give_back();
+    return is_new;
 }
 
 OpenBlob Service::open_blob(const std::string& digest) try {
@@ -162,6 +162,18 @@ OpenBlob Service::open_blob(const std::string& digest) try {
 } catch (const LostBlob& lost) {
     spdlog::error("{}", lost.what());
     throw Refusal(Refused::busy, std::string(lost.what()) + "; a result is baked again, an input must be sent again");
+}
+
+std::string Service::list_blobs(const std::string& cursor, int limit, bool unneeded) {
+    return list_sent_blobs(parts_->database, cursor, limit, unneeded);
+}
+
+void Service::remove_input(const std::string& kind, const std::string& digest, bool force) {
+    hairbake::remove_input(parts_->database, parts_->store, kind, digest, force);
+}
+
+void Service::remove_blob(const std::string& digest, bool force) {
+    hairbake::remove_blob(parts_->database, parts_->store, digest, force);
 }
 
 Catalog::Added Service::add_input(const std::string& kind, const std::string& digest) {

@@ -34,14 +34,15 @@ public:
     ~Service();
 
     // ---- blobs
-    /// A file to receive a body into. Makes room for `expected_bytes`, unless the blob `digest` is stored.
+    /// A file to receive a body of `bytes` into, or of unknown length. Its room is reserved until the file is gone. A
+    /// body of the blob `digest` needs none in the budget if that is stored.
     /// Throws Refusal(full) when there is no room.
     /// Throws Refusal(busy) when the store was moved, deleted or replaced.
-    std::unique_ptr<IncomingFile> receive(std::uint64_t expected_bytes, const std::string& digest = {});
+    std::unique_ptr<IncomingFile> receive(std::optional<std::uint64_t> bytes, const std::string& digest = {});
 
     /// Makes the received file a blob; returns whether it is new.
     /// Throws Refusal(unprocessable) when `expected_digest` is not empty and not the file's.
-    /// Throws Refusal(full) when there is no room.
+    /// Throws Refusal(full) when the blob was stored while the body began, is no longer, and has no room.
     bool store_blob(IncomingFile& file, const std::string& expected_digest);
 
     /// Opens a blob, verified. A spoiled result is baked again.
@@ -49,6 +50,13 @@ public:
     /// Throws Refusal(busy) for a spoiled blob.
     OpenBlob open_blob(const std::string& digest);
     std::optional<std::uint64_t> blob_size(const std::string& digest);
+
+    /// As sent_blobs.h tells.
+    std::string list_blobs(const std::string& cursor, int limit, bool unneeded);
+
+    /// As input_removal.h tells; `kind` is "model" or "environment".
+    void remove_input(const std::string& kind, const std::string& digest, bool force);
+    void remove_blob(const std::string& digest, bool force);
 
     /// Catalog::add() of verified bytes. Throws as open_blob(), too.
     Catalog::Added add_input(const std::string& kind, const std::string& digest);

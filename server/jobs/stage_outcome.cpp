@@ -20,6 +20,8 @@ Outcome outcome_of_exception() {
         throw;
     } catch (const WrongResult& wrong) {
         return outcome(End::died, ErrorKind::internal, wrong.what());
+    } catch (const ResultTooLarge& large) {
+        return outcome(End::failed, ErrorKind::out_of_resources, large.what());
     } catch (const nlohmann::json::exception& wrong) {  // a manifest that lacks members
         return outcome(End::died, ErrorKind::internal, wrong.what());
     } catch (const Error& error) {

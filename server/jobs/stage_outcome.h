@@ -12,8 +12,13 @@ struct WrongResult : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// The end of the stage for the exception that is being handled. Only what an input causes is End::failed. A wrong result
-/// is End::died. All else is End::trouble: the machine is at fault.
+/// A result that the store cannot hold, also if it held nothing else.
+struct ResultTooLarge : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// The end of the stage for the exception that is being handled. Only what an input causes is End::failed, and a result
+/// that is too large. A wrong result is End::died. All else is End::trouble: the machine is at fault, or has no room now.
 Outcome outcome_of_exception();
 
 }  // namespace hairbake

@@ -9,10 +9,10 @@
 #include "core/base/digest.h"
 #include "server/store/blob_store.h"
 #include "server/store/database.h"
-#include "server/store/eviction.h"
 #include "server/store/file_system.h"
 #include "server/store/refusal.h"
 #include "server/store/removal_log.h"
+#include "server/store/room.h"
 
 namespace hairbake {
 namespace fs = std::filesystem;
@@ -36,8 +36,21 @@ private:
     const std::string id_;
 };
 
-Uploads::Uploads(Database& database, BlobStore& store, fs::path folder, const Limits& limits)
-    : database_(database), store_(store), folder_(std::move(folder)), limits_(limits) {
+/// The room of the bytes that an upload receives. At the end, however it comes, the bytes on the disk are kept.
+struct Uploads::Growth {
+    Growth(Uploads& of, const std::string& upload, Room::Share reserved)
+        : uploads(of), id(upload), share(std::move(reserved)) {}
+    ~Growth() { share.become_kept(id, uploads.size_on_disk(id)); }
+    Growth(const Growth&) = delete;
+    Growth& operator=(const Growth&) = delete;
+
+    Uploads& uploads;
+    const std::string id;
+    Room::Share share;
+};
+
+Uploads::Uploads(Database& database, BlobStore& store, Room& room, fs::path folder, const Limits& limits)
+    : database_(database), store_(store), room_(room), folder_(std::move(folder)), limits_(limits) {
     make_folder(folder_);
 }
 
@@ -67,6 +80,8 @@ void Uploads::recover() {
         for (const SqlRow& row : sql.rows("SELECT id FROM uploads"))
             if (!fs::exists(folder_ / row.text(0))) sql.run("DELETE FROM uploads WHERE id = ?", {row.text(0)});
     });
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_))
+        room_.keep(entry.path().filename().string(), entry.file_size());
     expire();
     complete_whole_ones();
 }
@@ -135,7 +150,8 @@ UploadState Uploads::create(std::uint64_t bytes, const std::string& sha256, cons
                             const std::string& token) {
     check(bytes, sha256, token);
     database_.check_in_place();
-    UploadState state{random_name(), metadata, bytes, 0, now() + limits_.lifetime_s};
+    room_.reserve(bytes, store_.size_of(sha256).has_value());  // for this moment: refused if it cannot fit
+    UploadState state{random_name(), metadata, sha256, bytes, 0, now() + limits_.lifetime_s};
     const Descriptor file(::open((folder_ / state.id).c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0640));
     if (!file) throw_store_error(folder_ / state.id, errno);
     sync_folder(folder_);
@@ -149,15 +165,15 @@ UploadState Uploads::create(std::uint64_t bytes, const std::string& sha256, cons
 UploadState Uploads::get(const std::string& id) {
     UploadState state;
     database_.read([&](Sql& sql) {
-        const auto rows = sql.rows("SELECT bytes, metadata, expires FROM uploads WHERE id = ?", {id});
+        const auto rows = sql.rows("SELECT bytes, metadata, expires, sha256 FROM uploads WHERE id = ?", {id});
         if (rows.empty()) throw Refusal(Refused::not_found, "there is no upload " + id.substr(0, 64));
-        state = {id, rows[0].text(1), static_cast<std::uint64_t>(rows[0].integer(0)), size_on_disk(id),
-                 rows[0].number(2)};
+        const auto bytes = static_cast<std::uint64_t>(rows[0].integer(0));
+        state = {id, rows[0].text(1), rows[0].text(3), bytes, size_on_disk(id), rows[0].number(2)};
     });
     return state;
 }
 
-Uploads::Appended Uploads::append(const std::string& id, std::uint64_t offset,
+Uploads::Appended Uploads::append(const std::string& id, std::uint64_t offset, std::optional<std::uint64_t> length,
                                   const std::function<void(const Receiver&)>& read) {
     const Busy busy(*this, id);
     database_.check_in_place();
@@ -166,20 +182,38 @@ Uploads::Appended Uploads::append(const std::string& id, std::uint64_t offset,
         throw Refusal(Refused::conflict,
                       "Upload-Offset is " + std::to_string(offset) + "; allowed is " + std::to_string(state.offset),
                       "Upload-Offset");
-    const fs::path path = folder_ / id;
-    const Descriptor file(::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
-    if (!file) throw_store_error(path, errno);
-    std::uint64_t size = offset;
-    read([&](std::span<const std::byte> bytes) {
-        if (bytes.size() > state.bytes - size)
-            throw Refusal(Refused::too_large,
-                          "the upload grows beyond its Upload-Length of " + std::to_string(state.bytes));
-        write_all(file.get(), bytes, path);
-        size += bytes.size();
-    });
-    sync_file(file.get(), path);
+    try {
+        receive(state, length, read);
+    } catch (const Refusal& refusal) {
+        if (refusal.why() == Refused::full) prolong(id);  // what was acknowledged waits for room
+        throw;
+    }
+    const std::uint64_t size = size_on_disk(id);
     if (size == state.bytes) return complete(id);
     return {size, prolong(id), {}};
+}
+
+/// Appends the body to the upload's file and syncs it.
+void Uploads::receive(const UploadState& state, std::optional<std::uint64_t> length,
+                      const std::function<void(const Receiver&)>& read) {
+    const auto refuse_if_longer = [&](std::uint64_t bytes, std::uint64_t left) {
+        if (bytes > left)
+            throw Refusal(Refused::too_large,
+                          "the upload grows beyond its Upload-Length of " + std::to_string(state.bytes));
+    };
+    std::uint64_t left = state.bytes - state.offset;
+    refuse_if_longer(length.value_or(0), left);
+    const fs::path path = folder_ / state.id;
+    const Descriptor file(::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
+    if (!file) throw_store_error(path, errno);
+    Growth growth(*this, state.id, room_.reserve(length, store_.size_of(state.sha256).has_value()));
+    read([&](std::span<const std::byte> bytes) {
+        refuse_if_longer(bytes.size(), left);
+        growth.share.grow(bytes.size());
+        write_all(file.get(), bytes, path);
+        left -= bytes.size();
+    });
+    sync_file(file.get(), path);
 }
 
 double Uploads::prolong(const std::string& id) {
@@ -189,51 +223,45 @@ double Uploads::prolong(const std::string& id) {
 }
 
 Uploads::Appended Uploads::complete(const std::string& id) {
-    std::string expected;
-    database_.read(
-        [&](Sql& sql) { expected = sql.rows("SELECT sha256 FROM uploads WHERE id = ?", {id}).at(0).text(0); });
-    const std::uint64_t size = size_on_disk(id);
+    const UploadState state = get(id);
     const std::string found = digest_of_file(folder_ / id);
-    const bool whole = found == expected;
-    if (whole) make_blob(id, expected, size);
-    remove_file(id, whole ? "the upload became a blob, which keeps the bytes" : "the upload's digest is wrong");
-    if (whole) store_.note_other_link_removed(expected);
+    const bool whole = found == state.sha256;
+    if (whole) make_blob(id, found);
+    forget(id, whole ? "the upload became a blob, which keeps the bytes" : "the upload's digest is wrong");
+    if (whole) store_.note_other_link_removed(found);
     if (!whole)
         throw Refusal(Refused::unprocessable,
-                      "the digest of the uploaded bytes is " + found + "; allowed is " + expected, "sha256");
-    return {size, 0, expected};
+                      "the digest of the uploaded bytes is " + found + "; allowed is " + state.sha256, "sha256");
+    return {state.bytes, 0, state.sha256};
 }
 
-/// Other files may have used the room since the upload began. Its bytes were acknowledged, so they are not dropped: the
-/// whole upload waits with a new lifetime, and an empty PATCH tries again.
-void Uploads::make_blob(const std::string& id, const std::string& digest, std::uint64_t bytes) {
+/// The bytes are on the disk and counted already, so the blob needs no room. If it cannot be made (the disk is broken),
+/// the whole upload stays, and an empty PATCH tries again.
+void Uploads::make_blob(const std::string& id, const std::string& digest) {
     const auto held = database_.lock();
-    if (!store_.size_of(digest)) try {
-            make_room(database_, store_, limits_.budget, bytes);
-        } catch (const Refusal&) {
-            prolong(id);
-            throw;
-        }
     // By a second link: a crash before the row is written leaves the upload as it was.
     struct Link {
         fs::path path;
         ~Link() { ::unlink(path.c_str()); }  // there is none when the store took it
     } const second{store_.incoming_folder() / random_name()};
     if (::link((folder_ / id).c_str(), second.path.c_str()) != 0) throw_store_error(second.path, errno);
-    store_.adopt(second.path, digest);
+    store_.adopt(second.path, digest, Origin::sent);
+    room_.keep(id, 0);  // a blob now
+}
+
+/// Removes the upload's row and file. `reason` is for the log.
+void Uploads::forget(const std::string& id, std::string_view reason) {
+    database_.write([&](Sql& sql) { sql.run("DELETE FROM uploads WHERE id = ?", {id}); });
+    FileCount removed;
+    remove_counted(folder_ / id, removed);
+    log_removal(removed, reason);
+    room_.keep(id, 0);
 }
 
 void Uploads::remove(const std::string& id, std::string_view reason) {
     const Busy busy(*this, id);
     get(id);
-    remove_file(id, reason);
-}
-
-void Uploads::remove_file(const std::string& id, std::string_view reason) {
-    database_.write([&](Sql& sql) { sql.run("DELETE FROM uploads WHERE id = ?", {id}); });
-    FileCount removed;
-    remove_counted(folder_ / id, removed);
-    log_removal(removed, reason);
+    forget(id, reason);
 }
 
 }  // namespace hairbake

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -15,9 +16,10 @@ namespace hairbake {
 
 class BlobStore;
 class Database;
+class Room;
 
 struct UploadState {
-    std::string id, metadata;
+    std::string id, metadata, sha256;  ///< sha256: digest of the whole file
     std::uint64_t bytes = 0, offset = 0;
     double expires = 0;
 };
@@ -30,10 +32,10 @@ public:
     struct Limits {
         double lifetime_s = 0;         ///< of an upload that does not grow
         std::uint64_t most_bytes = 0;  ///< of one upload
-        std::uint64_t budget = 0;      ///< of the store, and of all unfinished uploads together, as announced
+        std::uint64_t budget = 0;      ///< what all unfinished uploads together may announce
         int most_open = 0;             ///< unfinished uploads of one token
     };
-    Uploads(Database& database, BlobStore& store, std::filesystem::path folder, const Limits& limits);
+    Uploads(Database& database, BlobStore& store, Room& room, std::filesystem::path folder, const Limits& limits);
 
     /// At boot: moves files without a row to lost+found, removes rows without a file; makes blobs of uploads that are
     /// whole.
@@ -41,12 +43,12 @@ public:
     /// Removes expired uploads.
     void expire();
 
+    /// `sha256` is the digest of the whole file; `token` names the sender. The announced bytes take no room yet: their
+    /// room is reserved while they arrive.
     /// Throws Refusal(too_many) when the token has too many unfinished uploads, or when they would announce more than
     /// half of the budget.
-    /// Throws Refusal(full) when all unfinished uploads together would announce more than the budget.
-    void check(std::uint64_t bytes, const std::string& sha256, const std::string& token);
-
-    /// `sha256` is the digest of the whole file; `token` names the sender. Throws as check().
+    /// Throws Refusal(full) when all unfinished uploads together would announce more than the budget, or when the file
+    /// has no room now.
     UploadState create(std::uint64_t bytes, const std::string& sha256, const std::string& metadata,
                        const std::string& token);
     UploadState get(const std::string& id);
@@ -58,24 +60,33 @@ public:
     };
     /// Appends bytes durably. Makes the file a blob when it is complete. Bytes received before a failure stay.
     ///
-    /// `offset` must be the upload's; `read` feeds the bytes to the receiver that it is given.
+    /// `offset` must be the upload's.
+    /// `length` is that of the body, if it is known.
+    /// `read` feeds the bytes to the receiver that it is given.
     /// Throws Refusal(conflict) for another offset and while another request writes to the upload.
-    /// Throws Refusal(full) when there is no room for the blob.
-    Appended append(const std::string& id, std::uint64_t offset, const std::function<void(const Receiver&)>& read);
+    /// Throws Refusal(too_large) when the upload would grow beyond its length.
+    /// Throws Refusal(full) when the bytes have no room.
+    Appended append(const std::string& id, std::uint64_t offset, std::optional<std::uint64_t> length,
+                    const std::function<void(const Receiver&)>& read);
     /// `reason` is for the log.
     void remove(const std::string& id, std::string_view reason = "the upload was deleted on request");
 
 private:
     struct Busy;
+    struct Growth;
+    void check(std::uint64_t bytes, const std::string& sha256, const std::string& token);
+    void receive(const UploadState& state, std::optional<std::uint64_t> length,
+                 const std::function<void(const Receiver&)>& read);
+    void forget(const std::string& id, std::string_view reason);
     std::uint64_t size_on_disk(const std::string& id) const;
     double prolong(const std::string& id);
     Appended complete(const std::string& id);
-    void remove_file(const std::string& id, std::string_view reason);
-    void make_blob(const std::string& id, const std::string& digest, std::uint64_t bytes);
+    void make_blob(const std::string& id, const std::string& digest);
     void complete_whole_ones();
 
     Database& database_;
     BlobStore& store_;
+    Room& room_;
     std::filesystem::path folder_;
     const Limits limits_;
     std::mutex mutex_;

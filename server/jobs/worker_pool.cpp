@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <system_error>
@@ -25,7 +26,7 @@
 #include "server/jobs/worker_trial.h"
 #include "server/store/blob_store.h"
 #include "server/store/database.h"
-#include "server/store/eviction.h"
+#include "server/store/room.h"
 
 namespace hairbake {
 namespace fs = std::filesystem;
@@ -90,9 +91,9 @@ std::string log_text(const Outcome& outcome) {
 
 }  // namespace
 
-WorkerPool::WorkerPool(Queue& queue, Runner& runner, Database& database, BlobStore& store,
+WorkerPool::WorkerPool(Queue& queue, Runner& runner, Database& database, BlobStore& store, Room& room,
                        const WorkerPoolSettings& settings)
-    : queue_(queue), runner_(runner), database_(database), store_(store), settings_(settings) {
+    : queue_(queue), runner_(runner), database_(database), store_(store), room_(room), settings_(settings) {
     for (int i = 0; i < settings_.workers; ++i) threads_.emplace_back([this] { work(); });
 }
 
@@ -104,7 +105,7 @@ void WorkerPool::work() {
             if (!stage) return;
             run_to_the_end(*stage);
             remove_leftovers();
-            evict(database_, store_, settings_.budget);
+            room_.trim();
         } catch (const std::exception& error) {  // the database cannot be written
             spdlog::error("a thread of the worker pool: {}", error.what());
             queue_.pause("", error.what());
@@ -285,7 +286,28 @@ std::string WorkerPool::checked_manifest(const ClaimedStage& stage, const fs::pa
     return text;
 }
 
+/// Throws ResultTooLarge when the whole budget is less than the result.
+void WorkerPool::check_fits(const std::vector<StageFile>& files, const fs::path& folder) {
+    std::map<std::string, std::uint64_t> sizes;  // by digest: equal files are one blob
+    for (const StageFile& file : files) sizes[file.sha256] = fs::file_size(folder / file.name);
+    std::uint64_t bytes = 0;
+    for (const auto& [digest, size] : sizes) bytes += size;
+    if (bytes > room_.budget())
+        throw ResultTooLarge("the result of " + std::to_string(bytes) +
+                             " bytes is larger than the whole store may be: " + "budget_mb is " +
+                             std::to_string(room_.budget() >> 20) + "; ask for a smaller result, or raise budget_mb");
+}
+
+/// Bytes by which the store grows with a result.
+std::uint64_t WorkerPool::new_bytes(const std::vector<StageFile>& files, const fs::path& folder) {
+    std::uint64_t bytes = 0;
+    for (const StageFile& file : files)
+        if (!store_.size_of(file.sha256)) bytes += fs::file_size(folder / file.name);
+    return bytes;
+}
+
 /// A worker is not believed: key and digests are checked before its files become blobs.
+/// Throws Refusal(full) when there is no room for the result now.
 void WorkerPool::store_result(const ClaimedStage& stage, std::unique_ptr<WorkFolder> work) {
     const fs::path folder = work->path() / "result";
     const std::string manifest = checked_manifest(stage, folder);
@@ -297,8 +319,10 @@ void WorkerPool::store_result(const ClaimedStage& stage, std::unique_ptr<WorkFol
             throw WrongResult("the worker's file " + name + " is not as its manifest describes it");
         files.push_back({name, digest, entry.at("bytes").get<std::uint64_t>()});
     }
+    check_fits(files, folder);
     const auto held = database_.lock();  // no eviction may come between the blobs and the rows that refer to them
-    for (const StageFile& file : files) store_.adopt(folder / file.name, file.sha256);
+    room_.make_room(new_bytes(files, folder));
+    for (const StageFile& file : files) store_.adopt(folder / file.name, file.sha256, Origin::made);
     work.reset();  // before anybody learns that the stage is done
     queue_.done(stage, files, manifest);
 }

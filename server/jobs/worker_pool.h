@@ -16,21 +16,23 @@ namespace hairbake {
 class BlobStore;
 class Database;
 class Queue;
+class Room;
 class Runner;
 class WorkFolder;
 struct ClaimedStage;
 struct Outcome;
+struct StageFile;
 
 struct WorkerPoolSettings {
-    std::string runner;        ///< name of the runner, stored with its handles
-    std::uint64_t budget = 0;  ///< of the store, in bytes
-    int workers = 1;           ///< at once
-    int threads = 1;           ///< of each worker
+    std::string runner;  ///< name of the runner, stored with its handles
+    int workers = 1;     ///< at once
+    int threads = 1;     ///< of each worker
 };
 
 class WorkerPool {
 public:
-    WorkerPool(Queue& queue, Runner& runner, Database& database, BlobStore& store, const WorkerPoolSettings& settings);
+    WorkerPool(Queue& queue, Runner& runner, Database& database, BlobStore& store, Room& room,
+               const WorkerPoolSettings& settings);
     /// Queue::stop() comes first.
     ~WorkerPool();
 
@@ -46,12 +48,15 @@ private:
     std::string checked_manifest(const ClaimedStage& stage, const std::filesystem::path& folder);
     void note_leftover(const std::filesystem::path& folder);
     void remove_leftovers();
+    void check_fits(const std::vector<StageFile>& files, const std::filesystem::path& folder);
+    std::uint64_t new_bytes(const std::vector<StageFile>& files, const std::filesystem::path& folder);
     void store_result(const ClaimedStage& stage, std::unique_ptr<WorkFolder> work);
 
     Queue& queue_;
     Runner& runner_;
     Database& database_;
     BlobStore& store_;
+    Room& room_;
     const WorkerPoolSettings settings_;
     std::mutex mutex_;
     std::vector<std::filesystem::path> leftovers_;  ///< work folders that could not be removed; guarded by mutex_

@@ -84,7 +84,7 @@ void BlobStore::check(IncomingFile& file, const std::string& expected) {
                       "sha256");
 }
 
-bool BlobStore::adopt(const fs::path& file, const std::string& digest) {
+bool BlobStore::adopt(const fs::path& file, const std::string& digest, Origin origin) {
     const auto held = database_.lock();
     database_.check_in_place();
     const bool known = size_of(digest).has_value();
@@ -102,13 +102,22 @@ bool BlobStore::adopt(const fs::path& file, const std::string& digest) {
                 "checked = excluded.checked",
                 {digest, facts.bytes, now(), now(), facts.mtime_ns, facts.ctime_ns, now()});
             sql.run("DELETE FROM removals WHERE sha256 = ?", {digest});
+            if (origin == Origin::sent) sql.run("INSERT OR IGNORE INTO sent_blobs VALUES(?)", {digest});
         });
         if (!known) total_bytes_ += static_cast<std::uint64_t>(facts.bytes);
         const std::lock_guard lock(mutex_);
         verified_[digest] = {now(), facts};
+    } else if (origin == Origin::sent && !is_sent(digest)) {  // a result that a client sends as an input
+        database_.write([&](Sql& sql) { sql.run("INSERT OR IGNORE INTO sent_blobs VALUES(?)", {digest}); });
     }
     touch(digest);
     return !known;
+}
+
+bool BlobStore::is_sent(const std::string& digest) {
+    bool sent = false;
+    database_.read([&](Sql& sql) { sent = !sql.rows("SELECT 1 FROM sent_blobs WHERE sha256 = ?", {digest}).empty(); });
+    return sent;
 }
 
 OpenBlob BlobStore::open(const std::string& digest, const OnLoss& on_loss) {

@@ -37,6 +37,9 @@ public:
         : std::runtime_error("the stored bytes of sha256:" + digest + " were lost or spoiled") {}
 };
 
+/// Where a blob's bytes come from: a client sent them, or a worker made them.
+enum class Origin { sent, made };
+
 struct OpenBlob {
     Descriptor file;
     std::uint64_t bytes = 0;
@@ -83,8 +86,9 @@ public:
     static void check(IncomingFile& file, const std::string& expected);
 
     /// Makes a file a blob by renaming it; returns whether the blob is new. The caller has synced the file and checked
-    /// its digest. A stored blob whose present bytes were not verified since the start is replaced.
-    bool adopt(const std::filesystem::path& file, const std::string& digest);
+    /// its digest. A stored blob whose present bytes were not verified since the start is replaced. A blob that a client
+    /// sent once stays one that is never evicted.
+    bool adopt(const std::filesystem::path& file, const std::string& digest, Origin origin);
 
     /// After a second link to a blob's file was unlinked: that changed the file's ctime, and not its bytes.
     void note_other_link_removed(const std::string& digest);
@@ -111,7 +115,7 @@ public:
     void note_check_failed(const std::string& digest);
 
     /// Removes rows and files, in one transaction. `reason` is for the log.
-    void remove(const std::vector<std::string>& digests, std::string_view reason = "nothing needs them any more");
+    void remove(const std::vector<std::string>& digests, std::string_view reason);
 
     /// Moves a file of the store to lost+found and adds it to `count`.
     void put_aside(const std::filesystem::path& file, FileCount& count);
@@ -125,6 +129,7 @@ private:
     void sweep_incoming(const std::set<std::string>& spared);
     void clear_unknown_files(const std::vector<std::filesystem::path>& files);
     bool is_verified(const std::string& digest, const FileFacts& facts);
+    bool is_sent(const std::string& digest);
     void verify(const std::string& digest, int descriptor, const OnLoss& on_loss,
                 const std::function<void(std::size_t)>& pace = {});
     void note_verified(const std::string& digest, const FileFacts& facts);

@@ -1,45 +1,52 @@
 #include "server/store/eviction.h"
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include "server/store/blob_store.h"
 #include "server/store/database.h"
-#include "server/store/refusal.h"
 
 namespace hairbake {
 namespace {
 
-constexpr const char* live_bake_of_stage =
+const std::string live_bake_of_stage =
     "EXISTS(SELECT 1 FROM bake_stages m CROSS JOIN bakes b ON b.seq = m.bake WHERE m.stage = s.key AND "
     "b.state IN ('queued', 'running'))";
 
+/// Of the blob `bl`: somebody else than a stage that wrote it needs it.
+const std::string is_needed =
+    "(EXISTS(SELECT 1 FROM sent_blobs t WHERE t.sha256 = bl.sha256) OR "
+    "EXISTS(SELECT 1 FROM stage_inputs t WHERE t.sha256 = bl.sha256) OR "
+    "EXISTS(SELECT 1 FROM inputs i WHERE i.sha256 = bl.sha256) OR "
+    "EXISTS(SELECT 1 FROM inputs i WHERE i.thumbnail = bl.sha256) OR "
+    "EXISTS(SELECT 1 FROM names n WHERE n.sha256 = bl.sha256))";
+
 /// Most blobs or stages that one ranking of all gives. The writer's lock is held while they are ranked.
-constexpr int ranked_at_once = 1000;
+constexpr std::int64_t ranked_at_once = 1000;
+
+std::vector<std::string> texts(const std::vector<SqlRow>& rows) {
+    std::vector<std::string> found;
+    for (const SqlRow& row : rows) found.push_back(row.text(0));
+    return found;
+}
 
 /// The least recently used stored stages that no live bake needs, oldest first.
 std::vector<std::string> oldest_stages(Sql& sql) {
-    std::vector<std::string> keys;
-    for (const SqlRow& row :
-         sql.rows(std::string("SELECT s.key FROM stages s WHERE s.state = 'done' AND NOT (") + live_bake_of_stage +
-                      ") ORDER BY (SELECT max(bl.used) FROM stage_files f JOIN blobs bl USING(sha256) "
-                      "WHERE f.stage = s.key), s.seq LIMIT ?",
-                  {std::int64_t(ranked_at_once)}))
-        keys.push_back(row.text(0));
-    return keys;
+    return texts(
+        sql.rows("SELECT s.key FROM stages s WHERE s.state = 'done' AND NOT (" + live_bake_of_stage +
+                     ") ORDER BY (SELECT max(bl.used) FROM stage_files f JOIN blobs bl USING(sha256) WHERE f.stage = "
+                     "s.key), s.seq LIMIT ?",
+                 {ranked_at_once}));
 }
 
-/// Forgets a stage and its bakes; returns its blobs that nothing else refers to.
+/// Forgets a stage and its bakes; returns its blobs that nothing else needs.
 std::vector<std::string> forget_stage(Sql& sql, const std::string& key) {
-    std::vector<std::string> blobs;
-    for (const SqlRow& row :
-         sql.rows("SELECT DISTINCT sha256 FROM stage_files f WHERE stage = ? AND NOT EXISTS(SELECT 1 "
-                  "FROM stage_files o WHERE o.sha256 = f.sha256 AND o.stage <> f.stage) "
-                  "AND sha256 NOT IN (SELECT sha256 FROM stage_inputs) "
-                  "AND sha256 NOT IN (SELECT sha256 FROM inputs) "
-                  "AND sha256 NOT IN (SELECT sha256 FROM names)",
-                  {key}))
-        blobs.push_back(row.text(0));
+    std::vector<std::string> blobs = texts(sql.rows(
+        "SELECT DISTINCT sha256 FROM stage_files f JOIN blobs bl USING(sha256) WHERE f.stage = ? AND NOT EXISTS("
+        "SELECT 1 FROM stage_files o WHERE o.sha256 = f.sha256 AND o.stage <> f.stage) AND NOT " +
+            is_needed,
+        {key}));
     const std::string ids = "(SELECT b.id FROM bake_stages m JOIN bakes b ON b.seq = m.bake WHERE m.stage = ?)";
     sql.run("DELETE FROM batch_bakes WHERE bake IN " + ids, {key});
     sql.run("DELETE FROM bake_names WHERE bake IN " + ids, {key});
@@ -51,33 +58,16 @@ std::vector<std::string> forget_stage(Sql& sql, const std::string& key) {
     return blobs;
 }
 
-/// The least recently used inputs that no live bake and no name refers to, oldest first.
-std::vector<std::string> oldest_inputs(Sql& sql) {
-    std::vector<std::string> digests;
-    for (const SqlRow& row :
-         sql.rows(std::string("SELECT sha256 FROM blobs bl WHERE "
-                              "NOT EXISTS(SELECT 1 FROM stage_files f WHERE f.sha256 = bl.sha256) AND "
-                              "NOT EXISTS(SELECT 1 FROM inputs i WHERE i.thumbnail = bl.sha256) AND "
-                              "NOT EXISTS(SELECT 1 FROM names n WHERE n.sha256 = bl.sha256 AND n.version = (SELECT "
-                              "max(version) FROM names m WHERE m.kind = n.kind AND m.path = n.path)) AND "
-                              "NOT EXISTS(SELECT 1 FROM stage_inputs t JOIN stages s ON s.key = t.stage WHERE "
-                              "t.sha256 = bl.sha256 AND (") +
-                      live_bake_of_stage + ")) ORDER BY used LIMIT ?",
-                  {std::int64_t(ranked_at_once)}))
-        digests.push_back(row.text(0));
-    return digests;
+/// Blobs that nothing refers to, oldest first: results of stages that were queued again, thumbnails, what a crash left.
+std::vector<std::string> oldest_unneeded(Sql& sql) {
+    return texts(
+        sql.rows("SELECT sha256 FROM blobs bl WHERE NOT EXISTS(SELECT 1 FROM stage_files f WHERE f.sha256 = bl.sha256) "
+                 "AND NOT " +
+                     is_needed + " ORDER BY used LIMIT ?",
+                 {ranked_at_once}));
 }
 
-std::vector<std::string> forget_input(Sql& sql, const std::string& digest) {
-    std::vector<std::string> blobs{digest};
-    for (const SqlRow& row :
-         sql.rows("SELECT thumbnail FROM inputs i WHERE sha256 = ? AND thumbnail IS NOT NULL AND NOT "
-                  "EXISTS(SELECT 1 FROM inputs o WHERE o.thumbnail = i.thumbnail AND o.seq <> i.seq)",
-                  {digest}))
-        blobs.push_back(row.text(0));
-    sql.run("DELETE FROM inputs WHERE sha256 = ?", {digest});
-    return blobs;
-}
+std::vector<std::string> forget_nothing_else(Sql&, const std::string& digest) { return {digest}; }
 
 /// The blobs that one transaction forgot: their files are to be removed.
 struct Forgotten {
@@ -113,25 +103,53 @@ bool evict_some(Database& database, BlobStore& store, std::vector<std::string> (
 
 }  // namespace
 
-bool evict(Database& database, BlobStore& store, std::uint64_t budget, std::uint64_t incoming) {
-    if (incoming > budget) return false;  // it cannot fit: evict nothing
-    const auto held = database.lock();    // rows and files go together
-    const std::uint64_t allowed = budget - incoming, spare = budget / 100 * 3;
+bool is_unneeded(Sql& sql, const std::string& digest) {
+    return !sql.rows(
+                   "SELECT 1 FROM blobs bl WHERE sha256 = ? AND NOT EXISTS(SELECT 1 FROM stage_files f WHERE f.sha256 "
+                   "= bl.sha256) AND NOT " +
+                       is_needed,
+                   {digest})
+                .empty();
+}
+
+std::uint64_t evictable_bytes(Database& database, std::uint64_t enough) {
+    std::uint64_t bytes = 0;
+    database.read([&](Sql& sql) {
+        const SqlRow most =
+            sql.rows(
+                   "SELECT (SELECT sum(bytes) FROM blobs) - (SELECT coalesce(sum(bytes), 0) FROM sent_blobs JOIN blobs "
+                   "USING(sha256))")
+                .at(0);
+        if (static_cast<std::uint64_t>(most.integer(0)) < enough) {  // a store that is full of inputs
+            bytes = static_cast<std::uint64_t>(most.integer(0));
+            return;
+        }
+        std::string last;
+        for (bool more = true; more && bytes < enough;) {
+            const auto rows = sql.rows("SELECT sha256, bytes FROM blobs bl WHERE sha256 > ? AND NOT " + is_needed +
+                                           " AND NOT EXISTS(SELECT 1 FROM stage_files f JOIN stages s ON s.key = "
+                                           "f.stage WHERE f.sha256 = bl.sha256 AND (s.state <> 'done' OR " +
+                                           live_bake_of_stage + ")) ORDER BY sha256 LIMIT ?",
+                                       {last, ranked_at_once});
+            for (const SqlRow& row : rows) bytes += static_cast<std::uint64_t>(row.integer(1));
+            more = rows.size() == static_cast<std::size_t>(ranked_at_once);
+            if (more) last = rows.back().text(0);
+        }
+    });
+    return bytes;
+}
+
+void evict(Database& database, BlobStore& store, std::uint64_t budget, std::uint64_t others) {
+    const auto held = database.lock();  // rows and files go together
+    const std::uint64_t allowed = budget - std::min(budget, others), spare = budget / 100 * 3;
     const std::uint64_t wanted = allowed - std::min(allowed, spare);
     std::uint64_t total = store.total_bytes();
-    if (total <= allowed) return true;
+    if (total <= allowed) return;
     store.flush_uses();
     for (; total > allowed; total = store.total_bytes())
         if (!evict_some(database, store, oldest_stages, forget_stage, total - wanted)) break;
     for (; total > allowed; total = store.total_bytes())
-        if (!evict_some(database, store, oldest_inputs, forget_input, total - allowed)) return false;
-    return true;
-}
-
-void make_room(Database& database, BlobStore& store, std::uint64_t budget, std::uint64_t incoming) {
-    if (!evict(database, store, budget, incoming))
-        throw Refusal(Refused::full, "the store's budget of " + std::to_string(budget) +
-                                         " bytes is used up by what live bakes and names need");
+        if (!evict_some(database, store, oldest_unneeded, forget_nothing_else, total - allowed)) return;
 }
 
 }  // namespace hairbake

@@ -1,4 +1,7 @@
-// Keeps the store within its budget.
+// Eviction: which blobs may go when the store needs room, and their removal.
+//
+// Only results go, with their stages and bakes, and blobs that nothing refers to. A blob that a client sent is never
+// evicted: nobody else may have it.
 #pragma once
 
 #include <cstdint>
@@ -8,17 +11,22 @@ namespace hairbake {
 
 class BlobStore;
 class Database;
+class Sql;
 
-/// Removes the least recently used blobs when the store's bytes and `incoming` more pass `budget`. Returns whether they
-/// fit now.
+/// Whether no client sent the blob and nothing refers to it.
+bool is_unneeded(Sql& sql, const std::string& digest);
+
+/// Bytes of the blobs that evict() could remove. Stops to count at `enough`, and then returns at least that. A result
+/// below `enough` may be too large.
+std::uint64_t evictable_bytes(Database& database, std::uint64_t enough);
+
+/// Removes the least recently used results when the store's bytes and `others` pass `budget`.
 ///
-/// Results go first, with their stages and the bakes that they finished, until 3 % of the budget are free or a thousand
-/// stages are gone; the next blobs then need no ranking of all stages. Inputs go next, until the budget is kept. A blob
-/// that a live bake reads or wrote is never removed, nor is one that a name's newest version refers to.
-bool evict(Database& database, BlobStore& store, std::uint64_t budget, std::uint64_t incoming = 0);
-
-/// evict() before a blob of `incoming` bytes. The room is there as long as the caller holds database.lock().
-/// Throws Refusal(full) when the blob does not fit.
-void make_room(Database& database, BlobStore& store, std::uint64_t budget, std::uint64_t incoming);
+/// `others` are bytes on the disk that count, too: bodies under way and unfinished uploads.
+///
+/// It goes on until 3 % of the budget are free or a thousand stages are gone; the next blobs then need no ranking of
+/// all stages. Blobs that nothing refers to go next. What a live bake reads or wrote stays, and so does every blob that
+/// a client sent, that a name or a stage's input refers to, or that is a model, an environment or a thumbnail.
+void evict(Database& database, BlobStore& store, std::uint64_t budget, std::uint64_t others = 0);
 
 }  // namespace hairbake

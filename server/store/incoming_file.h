@@ -4,28 +4,37 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 
 #include "core/base/digest.h"
+#include "server/store/room.h"
 
 namespace hairbake {
 
 /// Not thread-safe. The destructor removes the file unless a store has adopted it.
 class IncomingFile {
 public:
-    /// A new file of a random name in `folder`; at most `limit` bytes may be added.
-    IncomingFile(const std::filesystem::path& folder, std::uint64_t limit);
+    /// A new file of a random name in `folder`; at most `limit` bytes may be added, and they take their room of `share`.
+    IncomingFile(const std::filesystem::path& folder, std::uint64_t limit,
+                 std::optional<Room::Share> share = std::nullopt);
     ~IncomingFile();
     IncomingFile(const IncomingFile&) = delete;
     IncomingFile& operator=(const IncomingFile&) = delete;
 
     /// Throws Refusal(too_large) beyond the limit.
+    /// Throws Refusal(full) when there is no room.
     /// Throws Error(out_of_resources) for a full disk.
     void add(std::span<const std::byte> bytes);
 
     /// Syncs and closes the file; digest() is valid from now on, and nothing may be added any more.
     void finish();
+
+    /// The bytes take room of the store's budget for sure: see Room::Share::count().
+    void count();
+    /// Call it with database.lock() held when the file has become a blob.
+    void give_back();
 
     const std::filesystem::path& path() const { return path_; }
     std::uint64_t bytes() const { return bytes_; }
@@ -37,6 +46,7 @@ private:
     int descriptor_;
     Digest digest_;
     std::string hex_;
+    std::optional<Room::Share> share_;  ///< ends after the file
 };
 
 }  // namespace hairbake

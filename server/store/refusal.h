@@ -32,10 +32,16 @@ public:
         pointer_ = std::move(pointer);
         return *this;
     }
+    /// Of a conflict: what refers to the object, as the JSON object that the reply shows as needed_by; or empty.
+    const std::string& needed_by() const { return needed_by_; }
+    Refusal& because_of(std::string json) {
+        needed_by_ = std::move(json);
+        return *this;
+    }
 
 private:
     Refused why_;
-    std::string field_, pointer_;
+    std::string field_, pointer_, needed_by_;
 };
 
 }  // namespace hairbake

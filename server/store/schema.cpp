@@ -98,8 +98,19 @@ ALTER TABLE blobs ADD COLUMN ctime_ns INTEGER NOT NULL DEFAULT 0;
 ALTER TABLE blobs ADD COLUMN checked REAL NOT NULL DEFAULT 0;
 )sql";
 
-constexpr std::array<const char*, schema_version> changes{version_1, version_2, version_3,
-                                                          version_4, version_5, version_6};
+// Blobs that a client sent: they are never evicted. Of an older store these are the blobs that are used as inputs, and
+// those that are neither results nor thumbnails.
+constexpr const char* version_7 = R"sql(
+CREATE TABLE sent_blobs(sha256 TEXT PRIMARY KEY) WITHOUT ROWID;
+INSERT INTO sent_blobs SELECT sha256 FROM blobs WHERE sha256 IN (SELECT sha256 FROM inputs) OR
+    sha256 IN (SELECT sha256 FROM stage_inputs) OR sha256 IN (SELECT sha256 FROM names) OR NOT (
+    sha256 IN (SELECT sha256 FROM stage_files) OR
+    sha256 IN (SELECT thumbnail FROM inputs WHERE thumbnail IS NOT NULL));
+CREATE TRIGGER forget_sent_blob AFTER DELETE ON blobs BEGIN DELETE FROM sent_blobs WHERE sha256 = OLD.sha256; END;
+)sql";
+
+constexpr std::array<const char*, schema_version> changes{version_1, version_2, version_3, version_4,
+                                                          version_5, version_6, version_7};
 
 }  // namespace
 

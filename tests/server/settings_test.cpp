@@ -27,6 +27,7 @@ TEST_F(SettingsTest, TheDocumentedFileHasEveryDefault) {
     EXPECT_EQ(from_file.bodies, defaults.bodies);
     EXPECT_EQ(from_file.bodies_per_address, defaults.bodies_per_address);
     EXPECT_EQ(from_file.budget_bytes, defaults.budget_bytes);
+    EXPECT_EQ(from_file.keep_free_bytes, defaults.keep_free_bytes);
     EXPECT_EQ(from_file.blob_bytes, defaults.blob_bytes);
     EXPECT_EQ(from_file.upload_lifetime_s, defaults.upload_lifetime_s);
     EXPECT_EQ(from_file.open_uploads, defaults.open_uploads);

@@ -250,7 +250,7 @@ class Rebakes(unittest.TestCase):
             self.assertEqual(d.ask("POST", "/v1/environments", {"sha256": old}).status, 201)
             bake = self.bake(d, quick_request(hair, old))
             for kind, digest in (("models", hair), ("environments", old)):
-                self.assertEqual(d.ask("DELETE", f"/v1/{kind}/{digest}").status, 204)
+                self.assertEqual(d.ask("DELETE", f"/v1/{kind}/{digest}?force=1").status, 204)
                 self.assertEqual(d.ask("HEAD", f"/v1/blobs/{digest}").status, 404)
                 again = d.ask("POST", "/v1/bakes", quick_request(hair, old))
                 self.assertEqual((again.status, again.json.get("id")), (200, bake["id"]), again.body)

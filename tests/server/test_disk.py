@@ -14,8 +14,8 @@ SIZE_MB = 8
 class SmallDisk(Daemon):
     """The store is a tmpfs of SIZE_MB that only the daemon and its workers see; it is gone when the daemon ends."""
 
-    def __init__(self):
-        super().__init__()
+    def __init__(self, config="keep_free_mb = 0"):
+        super().__init__(config=config)
         self.store = self.path / "store"
         self.store.mkdir()
         mount = f'mount -t tmpfs -o size={SIZE_MB}m none "$0" && exec "$@"'
@@ -40,7 +40,7 @@ class SmallDisk(Daemon):
                 assert error.errno == errno.ENOSPC, error
             filler.truncate(filler.tell() - leave)
 
-    def free(self):
+    def free_filler(self):
         (self.inside / "filler").unlink()
 
     def leftovers(self):
@@ -81,7 +81,7 @@ class Disk(unittest.TestCase):
             verified(self, d, bake)
             self.assertEqual(d.leftovers(), [])
 
-            d.free()
+            d.free_filler()
             self.assertEqual(d.ask("GET", "/readyz").status, 200)
             offset = int(d.ask("HEAD", upload, headers=TUS).headers["Upload-Offset"])
             self.assertEqual(d.append(upload, offset, data[offset:]).status, 204)
@@ -111,7 +111,7 @@ class Disk(unittest.TestCase):
             bake = d.ask("POST", "/v1/bakes", request).json["id"]
             self.wait_for_pause(d, bake, "No space left")
             self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}/files/specular.npy").status, 409)
-            d.free()
+            d.free_filler()
             view = d.wait(bake)
             self.assertEqual((view["state"], view["stages"][0]["attempts"]), ("done", 1))
             self.assertEqual(d.leftovers(), [])

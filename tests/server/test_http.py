@@ -123,7 +123,7 @@ class HttpServer(unittest.TestCase):
                     for entry in value[field]:
                         check(entry, item)
 
-        for path, name in (("/v1/bakes", "BakePage"), ("/v1/models", "ModelPage"), ("/v1/names/model", "NamePage"),
+        for path, name in (("/v1/bakes", "BakePage"), ("/v1/blobs", "BlobPage"), ("/v1/models", "ModelPage"), ("/v1/names/model", "NamePage"),
                            ("/v1/names/model/hero", "Name")):
             check(d.ask("GET", path).json, name)
         check(d.ask("GET", d.ask("GET", "/v1/bakes").json["bakes"][0]["links"]["self"]).json, "Bake")

@@ -56,7 +56,7 @@ class Blobs(unittest.TestCase):
             self.assertEqual(d.ask("POST", "/v1/models", {"sha256": hair}).status, 201)
             bake = d.ask("POST", "/v1/bakes", quick_request(hair)).json["id"]
             file = next(f for f in d.wait(bake)["files"] if f["name"] == "transmittance.npy")
-            self.assertEqual(d.ask("DELETE", f"/v1/models/{hair}").status, 204)
+            self.assertEqual(d.ask("DELETE", f"/v1/models/{hair}?force=1").status, 204)
             d.stop()
             stored = d.blob_file(file["sha256"])
             stored.write_bytes(stored.read_bytes()[:-1] + b"!")
@@ -133,11 +133,11 @@ class Budget(unittest.TestCase):
             for data in kept:
                 self.assertEqual(d.ask("GET", f"/v1/blobs/{sha256(data)}").body, data)
 
-    def test_a_body_in_chunks_that_does_not_fit_is_refused_when_it_is_whole(self):
+    def test_a_body_in_chunks_that_does_not_fit_is_refused(self):
         with Daemon(config="budget_mb = 1\nblob_mb = 1") as d:
-            # Of 1,048,576 bytes 600,000 stay, since a name points at them.
+            # Of 1,048,576 bytes 600,000 stay: they are an input.
             kept, big, small = os.urandom(600_000), os.urandom(448_577), os.urandom(448_576)
-            d.ask("PUT", "/v1/names/mesh/kept", {"sha256": d.put(kept)})
+            d.put(kept)
             file = {"Content-Type": "application/octet-stream"}
             for reply in (d.ask("PUT", f"/v1/blobs/{sha256(big)}", iter([big])), d.ask("POST", "/v1/models", iter([big]), file)):
                 self.assertEqual((reply.status, reply.json["type"]), (507, "urn:hairbake:problem:full"), reply.body)
@@ -147,30 +147,28 @@ class Budget(unittest.TestCase):
             self.assertEqual(d.ask("PUT", f"/v1/blobs/{sha256(kept)}", iter([kept])).status, 200)  # stored already: needs no room
             self.assertEqual(d.ask("GET", f"/v1/blobs/{sha256(small)}").body, small)
 
-    def test_an_upload_that_finds_no_room_at_its_end_waits_for_it(self):
+    def test_an_upload_that_finds_no_room_waits_for_it(self):
         with Daemon(config="budget_mb = 1\nblob_mb = 1") as d:
             data = os.urandom(500_000)
             upload = d.create_upload(data).headers["Location"]
             self.assertEqual(d.append(upload, 0, data[:1000]).status, 204)
             kept = d.put(os.urandom(600_000))  # together more than 1,048,576
-            d.ask("PUT", "/v1/names/mesh/kept", {"sha256": kept})
-            reply = d.append(upload, 1000, data[1000:])
-            self.assertEqual((reply.status, reply.json["type"]), (507, "urn:hairbake:problem:full"), reply.body)
+            self.assertEqual(d.append(upload, 1000, data[1000:448_576]).status, 204)  # the rest of the room, to the byte
             for _ in range(2):  # before and after a start
-                self.assertEqual(d.ask("HEAD", upload, headers=TUS).headers["Upload-Offset"], str(len(data)))
-                self.assertEqual(d.append(upload, len(data), b"").status, 507)
-                self.assertEqual(d.ask("HEAD", f"/v1/blobs/{sha256(data)}").status, 404)
+                reply = d.append(upload, 448_576, data[448_576:])
+                self.assertEqual((reply.status, reply.json["type"]), (507, "urn:hairbake:problem:full"), reply.body)
+                self.assertEqual(d.ask("HEAD", upload, headers=TUS).headers["Upload-Offset"], "448576")
                 self.assertEqual(d.ask("HEAD", f"/v1/blobs/{kept}").status, 200)
                 self.assertEqual(d.leftovers(), [])
                 d.stop()
                 d.start()
-            d.ask("PUT", "/v1/names/mesh/kept", {"sha256": d.put(b"less")})
-            reply = d.append(upload, len(data), b"")
+            self.assertEqual(d.ask("DELETE", f"/v1/blobs/{kept}").status, 204)
+            reply = d.append(upload, 448_576, data[448_576:])
             self.assertEqual((reply.status, reply.headers["Hairbake-Blob"]), (204, f"/v1/blobs/{sha256(data)}"))
             self.assertEqual(d.ask("GET", f"/v1/blobs/{sha256(data)}").body, data)
             self.assertEqual(d.ask("HEAD", upload, headers=TUS).status, 404)
 
-    def test_results_go_until_three_hundredths_are_free_and_inputs_no_more_than_must(self):
+    def test_results_go_until_three_hundredths_are_free_and_inputs_stay(self):
         with Daemon(config="budget_mb = 1\nblob_mb = 1") as d:
             budget, models, bakes = 1 << 20, [], []
             for seed in range(12):
@@ -194,23 +192,19 @@ class Budget(unittest.TestCase):
     def stored(d):
         return sum(file.stat().st_size for file in (d.path / "store/blobs").rglob("*") if file.is_file())
 
-    def test_the_oldest_results_go_first_and_what_is_needed_stays(self):
+    def test_the_oldest_results_go_first_and_inputs_stay(self):
         with Daemon(config="budget_mb = 1\nblob_mb = 1") as d:
             hair = d.put(hair_bytes())
-            d.ask("PUT", "/v1/names/model/kept", {"sha256": hair})
             bake = d.ask("POST", "/v1/bakes", quick_request(hair)).json["id"]
             self.assertEqual(d.wait(bake)["state"], "done")
-            digests = [d.put(os.urandom(600_000)) for _ in range(3)]  # two of these exceed the budget
+            first, second = (d.put(os.urandom(size)) for size in (600_000, 448_576 - len(hair_bytes())))
             self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}").status, 404)  # forgotten
-            self.assertEqual([d.ask("HEAD", f"/v1/blobs/{x}").status for x in digests], [404, 404, 200])
-            self.assertEqual(d.ask("HEAD", f"/v1/blobs/{hair}").status, 200)  # a name points at it
+            self.assertEqual([d.ask("HEAD", f"/v1/blobs/{x}").status for x in (hair, first, second)], [200] * 3)
             reply = d.ask("PUT", f"/v1/blobs/{sha256(b'y' * 2_000_000)}", b"y" * 2_000_000)
             self.assertEqual(reply.status, 413)
-            # When all blobs are needed, there is no room.
-            big = os.urandom(900_000)
-            d.ask("PUT", "/v1/names/mesh/big", {"sha256": d.put(big)})
-            reply = d.ask("PUT", f"/v1/blobs/{sha256(b'z' * 900_000)}", b"z" * 900_000)
+            reply = d.ask("PUT", f"/v1/blobs/{sha256(b'z')}", b"z")
             self.assertEqual((reply.status, reply.json["type"]), (507, "urn:hairbake:problem:full"))
+            self.assertEqual(d.ask("DELETE", f"/v1/blobs/{first}").status, 204)
             self.assertEqual(d.ask("POST", "/v1/bakes", quick_request(hair)).json["id"], bake)  # the same request bakes again
             self.assertEqual(d.wait(bake)["state"], "done")
 

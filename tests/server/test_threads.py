@@ -48,6 +48,7 @@ class Client:
         for path in (f"/v1/bakes/{bake}", "/v1/bakes?limit=5", "/v1/models", "/metrics", "/readyz", "/openapi.json", "/v1/nothing"):
             self.expect((200, 404), "GET", path)
         self.upload(os.urandom(5000))
+        self.delete_and_cut(os.urandom(5000), own)
         self.daemon.raw(b"PUT /v1/blobs/x HTTP/1.1\r\nHost: localhost\r\nContent-Length: 9\r\n\r\n")
         if step % 4 == 3:
             view = self.daemon.wait(bake)
@@ -62,6 +63,16 @@ class Client:
         for begin in (0, 2500):
             self.expect((204,), "PATCH", path, data[begin:begin + 2500], headers={
                 **TUS, "Upload-Offset": str(begin), "Content-Type": "application/offset+octet-stream"})
+
+
+    def delete_and_cut(self, data, sky):
+        """Deletions of what is needed and of what is not, and bodies that are cut or in chunks."""
+        self.expect((201,), "PUT", f"/v1/blobs/{sha256(data[::-1])}", iter([data[:1000:-1], data[1000::-1]]))
+        with self.daemon.connect() as connection:
+            connection.sendall(f"PUT /v1/blobs/{'0' * 64} HTTP/1.1\r\nHost: x\r\nContent-Length: 9999\r\n\r\n".encode() + data)
+        self.expect((200,), "GET", "/v1/blobs?unneeded=1")
+        self.expect((409,), "DELETE", f"/v1/blobs/{sha256(sky)}")  # a name means it
+        self.expect((204,), "DELETE", f"/v1/blobs/{sha256(data[::-1])}")
 
 
 class Threads(unittest.TestCase):

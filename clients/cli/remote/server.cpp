@@ -40,6 +40,41 @@ std::string advice(int status) {
     return "";
 }
 
+/// "\n  and 3 more bakes" when the list is not whole.
+std::string rest_of(const Json& part, std::size_t shown, const std::string& what) {
+    const std::int64_t count =
+        part.contains("count") && part["count"].is_number_integer() ? part["count"].get<std::int64_t>() : 0;
+    const std::int64_t rest = count - static_cast<std::int64_t>(shown);
+    return rest > 0 ? "\n  and " + std::to_string(rest) + " more " + what : "";
+}
+
+/// problem.needed_by.FIELD; an empty object when it has another shape.
+Json list_in(const Json& problem, const char* field) {
+    const Json needed = problem.is_object() ? problem.value("needed_by", Json::object()) : Json::object();
+    const Json part = needed.is_object() ? needed.value(field, Json::object()) : Json::object();
+    return part.is_object() ? part : Json::object();
+}
+
+/// Lines that tell what refers to the input of a refused deletion; empty for other problems.
+std::string needed_by(const Json& problem) {
+    std::string text;
+    const auto add = [&](const char* field, const std::string& more, const auto& line) {
+        const Json part = list_in(problem, field);
+        const Json first = part.value("first", Json::array());
+        for (const Json& entry : first)
+            if (entry.is_object()) text += "\n  " + plain(line(entry));
+        text += rest_of(part, first.size(), more);
+    };
+    add("bakes", "bakes",
+        [](const Json& bake) { return "bake " + text_in(bake, "id") + " (" + text_in(bake, "state") + ")"; });
+    add("names", "versions of names", [](const Json& name) {
+        const bool has_version = name.contains("version") && name["version"].is_number_integer();
+        const std::string version = has_version ? "@" + name["version"].dump() : "";
+        return "name " + text_in(name, "kind") + "/" + text_in(name, "path") + version;
+    });
+    return text;
+}
+
 /// Says what the header Warning has in quotes: 299 - "the request: irradiance.tint is deprecated".
 void tell_warning(const HttpAnswer& answer) {
     const std::string header = answer.header("warning");
@@ -108,10 +143,14 @@ Json Server::json(const std::string& method, const std::string& path, const std:
 }
 
 void refuse(const HttpAnswer& answer) {
-    const std::string field = plain(text_in(problem_of(answer), "field"));
+    const Json problem = problem_of(answer);
+    const std::string field = plain(text_in(problem, "field"));
     std::string words = plain(words_of(answer));
     if (!field.empty() && words.find(field) == std::string::npos) words = field + ": " + words;
-    throw RemoteError(ExitCode::refused, "the server refuses: " + words + advice(answer.status), field);
+    throw RemoteError(ExitCode::refused,
+                      "the server refuses: " + words + advice(answer.status) + needed_by(problem) +
+                          (field == "force" ? "\n--force deletes it all the same" : ""),
+                      field);
 }
 
 Json parse_json(const std::string& text) {

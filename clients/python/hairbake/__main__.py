@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Callable, Dict, List, Optional
 
 from ._client import Bake, Client
-from ._errors import BakeCancelled, BakeFailed, HairbakeError, UsageError
+from ._errors import BakeCancelled, BakeFailed, HairbakeError, Refused, UsageError
 from ._fetch import check_result_folder
 from ._http import identifier
 
@@ -238,6 +238,18 @@ def upload(client: Client, arguments: Arguments, display: Display) -> None:
         display.line(f"{reference} {file}", "stored", file=file, reference=reference)
 
 
+def delete(client: Client, arguments: Arguments, display: Display) -> None:
+    for reference in arguments.input:
+        try:
+            client.delete(reference, arguments.kind, arguments.force)
+        except Refused as refused:
+            if refused.field != "force":
+                raise
+            raise Refused(f"{refused}\n--force deletes it all the same", "force", refused.status,
+                          refused.needed_by) from None
+        display.line(f"{reference} deleted", "deleted", reference=reference)
+
+
 def connection_options() -> argparse.ArgumentParser:
     common = argparse.ArgumentParser(add_help=False)
     common.add_argument("--server", default=os.environ.get("HAIRBAKE_SERVER"),
@@ -307,6 +319,12 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--as", dest="kind", choices=("model", "environment", "mesh"), default="")
     made.add_argument("--name", default="")
     made.add_argument("--note", default="")
+    made = command(delete, "delete inputs; results that were baked from them stay")
+    made.add_argument("input", nargs="+", help="sha256:DIGEST, as upload prints it")
+    made.add_argument("--as", dest="kind", choices=("model", "environment", "mesh"), default="",
+                      help="model or environment: the service lists it; mesh: it was sent only (default)")
+    made.add_argument("--force", action="store_true",
+                      help="also if done bakes or versions of names refer to it; without it they are listed")
     return main_parser
 
 

@@ -129,6 +129,18 @@ class Client:
             self._http.json("PUT", f"/v1/names/{kind}/{name}", {**digest, "note": note})
         return reference
 
+    def delete(self, reference: str, kind: str = "", force: bool = False) -> None:
+        """Deletes the input "sha256:DIGEST" from the server; results stay. `kind` "model" or "environment": the server
+        lists it. Raises Refused with `needed_by` if done bakes or versions of names refer to it and `force` is false, and
+        always while a bake that has not ended needs it."""
+        digest = re.fullmatch(r"sha256:([0-9a-f]{64})", reference)
+        if not digest:
+            raise UsageError(f"input is {plain(reference)}; allowed is sha256:DIGEST with 64 hexadecimal digits", "input")
+        place = f"{kind}s" if kind in ("model", "environment") else "blobs"
+        answer = self._http.ask("DELETE", f"/v1/{place}/{digest.group(1)}" + ("?force=1" if force else ""))
+        if answer.status != 204:
+            raise answer.refuse()
+
     def submit(self, hair: Optional[PathLike] = None, environment: Optional[PathLike] = None, *,
                occluder: Optional[PathLike] = None, receiver: Optional[PathLike] = None, priority: int = 0,
                **fields: Any) -> Bake:

@@ -1,6 +1,8 @@
 """The errors of the client, with the exit codes of the program hairbake."""
 from __future__ import annotations
 
+from typing import Any, Dict, Optional
+
 
 class HairbakeError(Exception):
     """`field` is the field of the request at fault, or empty."""
@@ -30,13 +32,16 @@ class ConnectionLost(Unreachable):
 
 
 class Refused(HairbakeError):
-    """The server refuses, or its answer cannot be trusted. `status` is the HTTP status, or 0."""
+    """The server refuses, or its answer cannot be trusted. `status` is the HTTP status, or 0. `needed_by` holds what
+    refers to an input that is not deleted: {"bakes": {"count": n, "first": [...]}, "names": {...}}."""
 
     exit_code, kind = 7, "refused"
 
-    def __init__(self, message: str, field: str = "", status: int = 0) -> None:
+    def __init__(self, message: str, field: str = "", status: int = 0,
+                 needed_by: Optional[Dict[str, Any]] = None) -> None:
         super().__init__(message, field)
         self.status = status
+        self.needed_by = needed_by or {}
 
 
 class BakeFailed(HairbakeError):

@@ -9,7 +9,7 @@ import sys
 import time
 import urllib.parse
 import warnings
-from typing import Any, Callable, Dict, Iterator, Mapping, Optional
+from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional
 
 from ._errors import ConnectionLost, Refused, Unreachable, UsageError, plain
 
@@ -21,6 +21,23 @@ IDENTIFIER = re.compile(r"[0-9A-Za-z_-]{1,128}")
 
 Json = Dict[str, Any]
 Sink = Callable[["Answer", bytes], None]
+
+
+def needed_lines(needed_by: Json) -> List[str]:
+    """What refers to an input that is not deleted, one line each, and how many more there are."""
+    lines: List[str] = []
+    for part, what in (("bakes", "bakes"), ("names", "versions of names")):
+        found = needed_by.get(part)
+        found = found if isinstance(found, dict) else {}
+        first = found.get("first")
+        entries = [entry for entry in first if isinstance(entry, dict)] if isinstance(first, list) else []
+        for entry in entries:
+            lines.append(f"bake {entry.get('id')} ({entry.get('state')})" if part == "bakes" else
+                         f"name {entry.get('kind')}/{entry.get('path')}@{entry.get('version')}")
+        count = found.get("count")
+        if isinstance(count, int) and count > len(entries):
+            lines.append(f"and {count - len(entries)} more {what}")
+    return lines
 
 
 class Answer:
@@ -50,7 +67,10 @@ class Answer:
         if field and field not in words:
             words = f"{field}: {words}"
         advice = "; a token is needed" if self.status == 401 else ""
-        return Refused(f"the server refuses: {words} (HTTP {self.status}){advice}", field, self.status)
+        needed_by = problem.get("needed_by")
+        needed_by = needed_by if isinstance(needed_by, dict) else {}
+        lines = "".join("\n  " + plain(line) for line in needed_lines(needed_by))
+        return Refused(f"the server refuses: {words} (HTTP {self.status}){advice}{lines}", field, self.status, needed_by)
 
 
 class Patience:

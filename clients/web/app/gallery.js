@@ -1,5 +1,6 @@
 // The gallery of stored hair models or environments, with the upload panel above it.
 import { html, useMemo, useState } from '../vendor/preact.js';
+import { delete_input } from './deletion.js';
 import { use_app, use_list } from './hooks.js';
 import { fact_rows, label_of, names_by_digest, summary, versions_by_path, warnings } from './input_facts.js';
 import { Cut, Facts, Loading, ProblemNote, Warnings } from './parts.js';
@@ -72,9 +73,8 @@ function Card({ entry, index, label, paths, files, on_change }) {
     const { api, announce } = use_app();
     const [problem, set_problem] = useState(null);
     const remove = async () => {
-        if (!confirm(`Delete ${label} and its file?`)) return;
         try {
-            await api.remove(entry.links.self);
+            if (!(await delete_input(api, entry.links.self, label))) return;
             announce(`${label} is deleted.`);
             on_change();
         } catch (failure) {

@@ -5,12 +5,14 @@ export class Problem extends Error {
     /**
      * status: HTTP status, 0 when the service could not be reached;
      * field: the request's field that is wrong, or '';
+     * needed_by: what refers to an input that is not deleted, as the service lists it, or null;
      * wait_ms: the wait that the service asks for before the next try, or 0.
      */
-    constructor(status, message, { field = '', wait_ms = 0 } = {}) {
+    constructor(status, message, { field = '', needed_by = null, wait_ms = 0 } = {}) {
         super(message);
         this.status = status;
         this.field = field;
+        this.needed_by = needed_by;
         this.wait_ms = wait_ms;
     }
 }
@@ -25,6 +27,7 @@ export async function problem_of(reply) {
     }
     return new Problem(reply.status, body.detail || `The service answered ${reply.status}.`, {
         field: body.field || '',
+        needed_by: body.needed_by ?? null,
         wait_ms: wait_ms_of(reply.headers.get('Retry-After')),
     });
 }

@@ -61,6 +61,15 @@ class Api(unittest.TestCase):
             hairbake.Client(self.url, patience_s=0).list()
         self.daemon.start()
 
+    def test_a_refused_deletion_has_the_list_of_what_refers_to_the_input(self):
+        sky = self.client.upload(self.shop.write("other.hdr", hdr_bytes(red=77)), "environment", "stage1/dusk")
+        with self.assertRaises(hairbake.Refused) as caught:
+            self.client.delete(sky, "environment")
+        self.assertEqual((caught.exception.status, caught.exception.field), (409, "force"))
+        self.assertEqual(caught.exception.needed_by["names"],
+                         {"count": 1, "first": [{"kind": "environment", "path": "stage1/dusk", "version": 1}]})
+        self.client.delete(sky, "environment", force=True)
+
     def test_the_example_bakes_a_folder_under_three_lightings_and_transmittance_once(self):
         (self.shop.path / "grooms").mkdir()
         for name, seed in (("fringe", 1), ("bun", 2)):

@@ -187,6 +187,31 @@ class Jobs:
         self.assertEqual(view["names"]["environment"], {"path": "stage1/noon", "version": 1})
         self.assertEqual(daemon.ask("GET", f"/v1/environments/{sha256(hdr_bytes())}").status, 200)
 
+    def test_delete_lists_what_refers_to_the_input_and_force_deletes_it(self):
+        # Relatives of a model: an environment with a name, and a mesh, which no list has.
+        daemon = self.daemon()
+        mesh = self.shop.write("head.obj", b"v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nf 1 2 3\n")
+        self.run_ok("upload", self.hair, "--as", "model", url=daemon.url)
+        self.run_ok("upload", self.sky, "--as", "environment", "--name", "stage1/noon", url=daemon.url)
+        bake = first_word(self.run_ok("submit", "--hair", self.hair, "--env", self.sky, "--occluder", mesh, *QUICK, "--wait",
+                                      url=daemon.url).out)
+        for number in range(22):
+            daemon.ask("PUT", f"/v1/names/mesh/n{number}", {"sha256": sha256(open(mesh, "rb").read())})
+        for file, kind, lines in ((self.hair, ["--as", "model"], [f"bake {bake} (done)"]),
+                                  (self.sky, ["--as", "environment"], [f"bake {bake} (done)", "name environment/stage1/noon@1"]),
+                                  (mesh, [], [f"bake {bake} (done)", "name mesh/n21@1", "and 2 more versions of names"])):
+            reference = "sha256:" + sha256(open(file, "rb").read())
+            err = self.run_failing(7, "delete", reference, *kind, url=daemon.url).err
+            for line in [*lines, "--force deletes it all the same"]:
+                self.assertIn(line, [text.strip() for text in err.splitlines()])
+            self.assertEqual(daemon.ask("HEAD", f"/v1/blobs/{reference[7:]}").status, 200)
+            done = self.run_ok("delete", reference, *kind, "--force", url=daemon.url)
+            self.assertEqual(done.out, f"{reference} deleted\n")
+            self.assertEqual(daemon.ask("HEAD", f"/v1/blobs/{reference[7:]}").status, 404)
+        self.assertEqual(daemon.ask("GET", f"/v1/bakes/{bake}").json["state"], "done")
+        for words, code in ((["delete", "sha256:12"], 2), (["delete", "sha256:" + "0" * 64], 7)):
+            self.run_failing(code, *words, url=daemon.url)
+
 
 class Refusals:
     def test_what_is_wrong_is_said_in_words_and_by_the_exit_code(self):

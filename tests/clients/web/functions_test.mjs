@@ -2,6 +2,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { phase_text, stage_counts_text, stage_title } from '../../../clients/web/app/bake/stage_text.js';
+import { force_question, needed_lines } from '../../../clients/web/app/deletion.js';
 import { warnings } from '../../../clients/web/app/input_facts.js';
 import { name_from_file, title_text } from '../../../clients/web/app/name_text.js';
 import { bytes_text, count_text, number_text } from '../../../clients/web/app/number_text.js';
@@ -200,4 +201,15 @@ test('any number of stages is shown, also one that the page has no text for', ()
         ].map(phase_text),
         ['Read hair', 'starting', 'queued', 'waits, because the machine is in trouble (No space left)', 'done'],
     );
+});
+
+test('the question before a deletion lists what refers to the input, and how much more there is', () => {
+    const needed_by = {
+        bakes: { count: 3, first: [{ id: 'a'.repeat(64), state: 'done' }] },
+        names: { count: 1, first: [{ kind: 'mesh', path: 'heads/round', version: 2 }] },
+    };
+    const lines = ['name mesh/heads/round, version 2', 'bake aaaaaaaaaaaa (done)', 'and 2 more bakes'];
+    assert.deepEqual(needed_lines({ needed_by }), lines);
+    assert.ok(force_question('head.obj', { needed_by }).startsWith(`head.obj is needed:\n${lines.join('\n')}\n`));
+    assert.deepEqual(needed_lines({ needed_by: null }), []);
 });

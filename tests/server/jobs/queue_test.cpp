@@ -45,7 +45,7 @@ protected:
         IncomingFile file(store.incoming_folder(), text.size());
         file.add(std::as_bytes(std::span(text)));
         file.finish();
-        store.adopt(file.path(), file.digest());
+        store.adopt(file.path(), file.digest(), Origin::sent);
         return file.digest();
     }
 

@@ -1,0 +1,201 @@
+#include "server/store/room.h"
+
+#include <sys/statvfs.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <utility>
+
+#include "core/base/assert.h"
+#include "server/store/blob_store.h"
+#include "server/store/database.h"
+#include "server/store/eviction.h"
+#include "server/store/file_system.h"
+#include "server/store/refusal.h"
+
+namespace hairbake {
+namespace {
+
+/// A body of unknown length is promised so many bytes at a time, as long as there is so much room.
+constexpr std::uint64_t step = 1 << 20;
+
+std::string mb(std::uint64_t bytes) { return std::to_string(bytes >> 20); }
+
+}  // namespace
+
+Room::Room(Database& database, BlobStore& store, std::filesystem::path folder, const RoomLimits& limits)
+    : database_(database), store_(store), folder_(std::move(folder)), limits_(limits) {}
+
+Room::Share::Share(Share&& other) noexcept
+    : room_(std::exchange(other.room_, nullptr)),
+      counts_(other.counts_),
+      promised_(other.promised_),
+      received_(other.received_) {}
+
+void Room::Share::promise(std::uint64_t bytes) {
+    room_->promise(bytes, counts_);
+    promised_ += bytes;
+}
+
+void Room::Share::grow(std::uint64_t bytes) {
+    HAIRBAKE_ASSERT(room_);  // before give_back()
+    if (received_ + bytes > promised_) {
+        const std::uint64_t lacking = received_ + bytes - promised_;
+        try {
+            promise(std::max(lacking, step));
+        } catch (const Refusal&) {
+            if (lacking >= step) throw;
+            promise(lacking);
+        }
+    }
+    room_->arrive(bytes, counts_);
+    received_ += bytes;
+    if (counts_) room_->make_room(0);
+}
+
+void Room::Share::count() {
+    if (counts_) return;
+    const auto held = room_->database_.lock();
+    room_->admit(promised_, [this](Counters& counters) {
+        counters.promised += promised_;
+        counters.received += received_;
+    });
+    counts_ = true;
+    room_->make_room(0);
+}
+
+void Room::Share::give_back() {
+    if (!room_) return;
+    const std::lock_guard lock(room_->mutex_);
+    forget();
+}
+
+void Room::Share::become_kept(const std::string& upload, std::uint64_t total) {
+    const std::lock_guard lock(room_->mutex_);
+    room_->set_kept(upload, total);
+    forget();
+}
+
+/// With the room's mutex held.
+void Room::Share::forget() {
+    Counters& counters = room_->counters_;
+    counters.unwritten -= promised_ - received_;
+    if (counts_) {
+        counters.promised -= promised_;
+        counters.received -= received_;
+    }
+    room_ = nullptr;
+}
+
+Room::Share Room::reserve(std::optional<std::uint64_t> announced, bool is_stored) {
+    Share share(*this, !is_stored);
+    share.promise(announced.value_or(0));
+    return share;
+}
+
+/// Promises `bytes` more of a body.
+void Room::promise(std::uint64_t bytes, bool counts) {
+    if (bytes == 0) return;
+    const auto add = [&](Counters& counters) {
+        if (counts) counters.promised += bytes;
+        counters.unwritten += bytes;
+    };
+    {
+        const std::lock_guard lock(mutex_);
+        require_disk(counters_.unwritten + bytes);
+        if (!counts || excess(counters_.promised + counters_.kept + bytes) == 0) return add(counters_);
+    }
+    admit(bytes, add);
+}
+
+/// Calls `add` when `bytes` more fit into the budget after evictions. Holds the database's lock, so that bytes that
+/// have just become a blob are not counted twice, and what can be evicted stays the same.
+void Room::admit(std::uint64_t bytes, const std::function<void(Counters&)>& add) {
+    const auto held = database_.lock();
+    const std::lock_guard lock(mutex_);
+    require_evictable(excess(counters_.promised + counters_.kept + bytes), bytes);
+    add(counters_);
+}
+
+void Room::arrive(std::uint64_t bytes, bool counts) {
+    const std::lock_guard lock(mutex_);
+    require_disk(bytes);
+    counters_.unwritten -= bytes;
+    if (counts) counters_.received += bytes;
+}
+
+void Room::keep(const std::string& upload, std::uint64_t bytes) {
+    const std::lock_guard lock(mutex_);
+    set_kept(upload, bytes);
+}
+
+void Room::set_kept(const std::string& upload, std::uint64_t bytes) {
+    const auto known = kept_.find(upload);
+    if (known != kept_.end()) {
+        counters_.kept -= known->second;
+        kept_.erase(known);
+    }
+    if (bytes == 0) return;
+    kept_[upload] = bytes;
+    counters_.kept += bytes;
+}
+
+std::uint64_t Room::others() const {
+    const std::lock_guard lock(mutex_);
+    return counters_.received + counters_.kept;
+}
+
+void Room::make_room(std::uint64_t bytes) {
+    if (excess(others() + bytes) == 0) return;
+    const auto held = database_.lock();
+    const std::uint64_t more = others() + bytes;
+    require_evictable(excess(more), bytes);
+    evict(database_, store_, limits_.budget, more);
+}
+
+void Room::trim() { evict(database_, store_, limits_.budget, others()); }
+
+/// By how much the store's blobs and `more` pass the budget.
+std::uint64_t Room::excess(std::uint64_t more) const {
+    const std::uint64_t all = store_.total_bytes() + more;
+    return all - std::min(all, limits_.budget);
+}
+
+/// `excess` must be evictable; `bytes` are wanted.
+void Room::require_evictable(std::uint64_t excess, std::uint64_t bytes) const {
+    if (excess == 0) return;
+    const std::uint64_t evictable = evictable_bytes(database_, excess);
+    if (evictable >= excess) return;
+    const std::string wanted = bytes > 0 ? std::to_string(bytes) + " more bytes exceed" : "the bytes received exceed";
+    throw Refusal(Refused::full, wanted + " the store's budget of " + std::to_string(limits_.budget) + " bytes by " +
+                                     std::to_string(excess) + ", and results of at most " + std::to_string(evictable) +
+                                     " bytes can be evicted; inputs and what is being received are never evicted: "
+                                     "delete inputs (GET /v1/blobs lists them), or raise budget_mb");
+}
+
+/// `bytes` and those of keep_free must be free on the disk.
+void Room::require_disk(std::uint64_t bytes) const {
+    const std::uint64_t free = free_bytes();
+    if (free >= limits_.keep_free && free - limits_.keep_free >= bytes) return;
+    throw Refusal(Refused::full, "the store's disk has " + std::to_string(free) + " bytes free; needed are " +
+                                     std::to_string(bytes) + " for bodies under way, and keep_free_mb keeps " +
+                                     std::to_string(limits_.keep_free) + " free: make room on the disk");
+}
+
+std::uint64_t Room::free_bytes() const {
+    struct statvfs disk {};
+    if (::statvfs(folder_.c_str(), &disk) != 0) throw_store_error(folder_, errno);
+    return static_cast<std::uint64_t>(disk.f_bavail) * disk.f_frsize;
+}
+
+std::optional<std::string> Room::warning() {
+    const std::uint64_t disk = free_bytes() + store_.total_bytes() + others();
+    const std::uint64_t usable = disk - std::min(disk, limits_.keep_free);
+    if (usable >= limits_.budget) return std::nullopt;
+    return "budget_mb is " + mb(limits_.budget) + "; the disk of " + folder_.string() + " has room for " + mb(usable) +
+           " MB of the store, with keep_free_mb = " + mb(limits_.keep_free) +
+           ": before the budget is used up the disk is, and then uploads are refused and nothing is evicted. Lower "
+           "budget_mb, or use a larger disk";
+}
+
+}  // namespace hairbake
