@@ -204,7 +204,7 @@ class HostileWorkers(unittest.TestCase):
     RULES = """
 *'"seed":21,'*) mkdir "$folder/result"; head -c 400000 /dev/zero | tr '\\0' '[' > "$folder/result/manifest.json"; say '{"done":{}}' ;;
 *'"seed":22,'*) mkdir "$folder/result"; head -c 50000000 /dev/zero | tr '\\0' ' ' > "$folder/result/manifest.json"; say '{"done":{}}' ;;
-*'"seed":23,'*) say '{"done":'"$(head -c 400000 /dev/zero | tr '\\0' '[')$(head -c 400000 /dev/zero | tr '\\0' ']')"'}'; exit 3 ;;
+*'"seed":23,'*) say '{"begin":{}}'; say '{"done":'"$(head -c 400000 /dev/zero | tr '\\0' '[')$(head -c 400000 /dev/zero | tr '\\0' ']')"'}'; exit 3 ;;
 *'"seed":24,'*) say '{"error":{"kind":"bad_input","message":"'"$(head -c 900000 /dev/zero | tr '\\0' 'x')"'"}}'; exit 1 ;;
 """
 

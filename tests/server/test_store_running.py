@@ -224,7 +224,9 @@ class RemovalLog(unittest.TestCase):
             d.put(first)
             hair = d.put(hair_bytes())
             self.assertEqual(d.ask("POST", "/v1/models", {"sha256": hair}).status, 201)
+            thumbnail = d.ask("GET", f"/v1/models/{hair}/thumbnail.png").body
             self.assertEqual(d.ask("DELETE", f"/v1/models/{hair}").status, 204)
+            self.assertEqual(d.ask("DELETE", f"/v1/blobs/{d.put(b'loose')}").status, 204)
             data = b"an upload"
             upload = d.create_upload(data).headers["Location"]
             self.assertEqual(d.append(upload, 0, data[:4]).status, 204)
@@ -233,7 +235,8 @@ class RemovalLog(unittest.TestCase):
             self.assertEqual(d.append(upload, 0, data).status, 204)
             upload = d.create_upload(data, digest=sha256(b"other")).headers["Location"]
             self.assertEqual(d.append(upload, 0, data).status, 422)
-            self.assertEqual(self.removals(d), [(1, len(hair_bytes()), "the model was deleted on request"),
+            self.assertEqual(self.removals(d), [(2, len(hair_bytes()) + len(thumbnail), "the model was deleted on request"),
+                                                (1, 5, "the file was deleted on request"),
                                                 (1, 4, "the upload was deleted on request"),
                                                 (1, len(data), "the upload became a blob, which keeps the bytes"),
                                                 (1, len(data), "the upload's digest is wrong")])

@@ -64,6 +64,13 @@ class Queue(Daemon):
             assert time.monotonic() < end, ready.body
             time.sleep(0.05)
 
+    def wait_for_rest(self, bakes):
+        """Until none of the bakes' stages runs: the queue is paused, and the next try is a second away."""
+        end = time.monotonic() + PATIENCE
+        while any(stage["state"] == "running" for bake in bakes for stage in self.ask("GET", f"/v1/bakes/{bake}").json["stages"]):
+            assert time.monotonic() < end
+            time.sleep(0.05)
+
     def metric(self, name):
         return [line for line in self.ask("GET", "/metrics").body.decode().splitlines() if line.startswith(name)]
 
@@ -291,6 +298,7 @@ class Troubles(unittest.TestCase):
             write_worker(d, """*) say '{"begin":{}}'; kill -ILL $$ ;;""")
             bakes = d.post(d.put(hair_bytes()), 5)
             d.wait_for_pause("a trial without an input failed, too: the worker was ended by a signal: Illegal instruction")
+            d.wait_for_rest(bakes)  # a stage that has died while its trial has not would be at fault
             d.heal()
             self.assert_all_done(d, bakes)
             self.assert_over(d)
