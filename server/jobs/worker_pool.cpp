@@ -3,18 +3,13 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <filesystem>
-#include <fstream>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <system_error>
 
 #include "core/base/assert.h"
-#include "core/base/digest.h"
 #include "core/base/error.h"
-#include "core/base/json_nesting.h"
 #include "core/request/request_json.h"
 #include "core/request/stages.h"
 #include "server/jobs/queue.h"
@@ -35,7 +30,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using End = Outcome::End;
 constexpr std::chrono::seconds retry_after{1};
-constexpr std::size_t longest_manifest = 512 << 10;  // bytes; the longest ones have some 50 kB
 
 /// The request's fields that name files, with their digests.
 std::vector<std::pair<std::string, std::string>> files_of(const Json& request) {
@@ -53,21 +47,6 @@ std::vector<Phase> phases_of(const ClaimedStage& stage) {
     BakeRequest request;
     merge_json(request, stage.request, "the stage's request");
     return planned_phases(std::span(&known, 1), request);
-}
-
-std::vector<std::string> digests_of(const ClaimedStage& stage) {
-    std::vector<std::string> digests;
-    for (const auto& [field, digest] : files_of(Json::parse(stage.request))) digests.push_back(digest);
-    return digests;
-}
-
-/// A missing file in a folder that is there has not its digest.
-/// Throws Error with the system's error number when the file cannot be read.
-bool has_its_digest(const fs::path& file, const std::string& digest) try {
-    return digest_of_file(file) == digest;
-} catch (const Error& error) {
-    if (error.system_error() == ENOENT && fs::is_directory(file.parent_path())) return false;
-    throw;
 }
 
 /// Clients see the message; they need not know where the store is.
@@ -154,6 +133,12 @@ void WorkerPool::record(const ClaimedStage& stage, const Outcome& outcome) {
     }
 }
 
+std::vector<std::string> WorkerPool::input_digests(const ClaimedStage& stage) {
+    std::vector<std::string> digests;
+    for (const auto& [field, digest] : files_of(Json::parse(stage.request))) digests.push_back(digest);
+    return digests;
+}
+
 /// The task as server/worker/task.h describes it: the stage's request with the paths of the blobs.
 /// Throws Error(bad_input) when an input is no longer stored.
 std::string WorkerPool::task_for(const ClaimedStage& stage) {
@@ -224,7 +209,7 @@ Outcome WorkerPool::run(const ClaimedStage& stage) {
         return outcome;
     }
     folder.reset();  // first: on a full disk the database may need its space
-    std::vector<std::string> suspects = digests_of(stage);
+    std::vector<std::string> suspects = input_digests(stage);
     if (outcome.end == End::trouble)
         std::erase_if(suspects, [&](const std::string& digest) { return fs::exists(store_.path_of(digest)); });
     const bool of_input = outcome.end == End::failed && outcome.kind == ErrorKind::bad_input;
@@ -248,83 +233,6 @@ void WorkerPool::remove_leftovers() {
         fs::remove_all(folder, error);
         return !error;
     });
-}
-
-/// Forgets inputs that are missing or whose stored bytes do not have their digest.
-/// Throws Error(bad_input) when there is one.
-/// Throws Error with the system's error number when one cannot be read now.
-void WorkerPool::remove_spoiled_inputs(const std::vector<std::string>& digests) {
-    for (const std::string& digest : digests)
-        if (!has_its_digest(store_.path_of(digest), digest)) {
-            store_.lose(digest, [&](Sql& sql) { queue_.blob_lost(sql, digest); });  // and the facts read from it
-            throw Error(ErrorKind::bad_input,
-                        "the stored bytes of sha256:" + digest + " were spoiled; send them again");
-        }
-}
-
-/// The text of the result's manifest.
-/// Throws WrongResult when it is missing, no JSON, or of another stage key.
-/// Throws Error with the system's error number when the work folder is gone or the file cannot be opened.
-/// Throws Error(bad_input) when it is of another stage key because an input was spoiled.
-std::string WorkerPool::checked_manifest(const ClaimedStage& stage, const fs::path& folder) {
-    const fs::path file = folder / "manifest.json";
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream && !(errno == ENOENT && fs::is_directory(folder.parent_path())))
-        throw Error(ErrorKind::internal, file.string() + ": " + std::generic_category().message(errno), {}, errno);
-    std::string text(longest_manifest + 1, '\0');
-    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-    text.resize(static_cast<std::size_t>(stream.gcount()));
-    if (text.size() > longest_manifest || nested_deeper_than(text, deepest_json))
-        throw WrongResult("the worker's manifest is longer than " + std::to_string(longest_manifest) +
-                          " bytes, or nested deeper than " + std::to_string(deepest_json) + " levels");
-    const Json manifest = Json::parse(text, nullptr, false);
-    if (!manifest.is_object()) throw WrongResult("the worker reported success, but its manifest is missing or no JSON");
-    if (manifest.at("stages").at(stage.kind).at("key") != stage.core_key) {
-        remove_spoiled_inputs(digests_of(stage));
-        throw WrongResult("the worker made another key than the daemon");
-    }
-    return text;
-}
-
-/// Throws ResultTooLarge when the whole budget is less than the result.
-void WorkerPool::check_fits(const std::vector<StageFile>& files, const fs::path& folder) {
-    std::map<std::string, std::uint64_t> sizes;  // by digest: equal files are one blob
-    for (const StageFile& file : files) sizes[file.sha256] = fs::file_size(folder / file.name);
-    std::uint64_t bytes = 0;
-    for (const auto& [digest, size] : sizes) bytes += size;
-    if (bytes > room_.budget())
-        throw ResultTooLarge("the result of " + std::to_string(bytes) +
-                             " bytes is larger than the whole store may be: " + "budget_mb is " +
-                             std::to_string(room_.budget() >> 20) + "; ask for a smaller result, or raise budget_mb");
-}
-
-/// Bytes by which the store grows with a result.
-std::uint64_t WorkerPool::new_bytes(const std::vector<StageFile>& files, const fs::path& folder) {
-    std::uint64_t bytes = 0;
-    for (const StageFile& file : files)
-        if (!store_.size_of(file.sha256)) bytes += fs::file_size(folder / file.name);
-    return bytes;
-}
-
-/// A worker is not believed: key and digests are checked before its files become blobs.
-/// Throws Refusal(full) when there is no room for the result now.
-void WorkerPool::store_result(const ClaimedStage& stage, std::unique_ptr<WorkFolder> work) {
-    const fs::path folder = work->path() / "result";
-    const std::string manifest = checked_manifest(stage, folder);
-    const Json described = Json::parse(manifest);
-    std::vector<StageFile> files;
-    for (const Json& entry : described.at("files")) {
-        const std::string name = entry.at("name").get<std::string>(), digest = entry.at("sha256").get<std::string>();
-        if (name.find('/') != std::string::npos || !has_its_digest(folder / name, digest))
-            throw WrongResult("the worker's file " + name + " is not as its manifest describes it");
-        files.push_back({name, digest, entry.at("bytes").get<std::uint64_t>()});
-    }
-    check_fits(files, folder);
-    const auto held = database_.lock();  // no eviction may come between the blobs and the rows that refer to them
-    room_.make_room(new_bytes(files, folder));
-    for (const StageFile& file : files) store_.adopt(folder / file.name, file.sha256, Origin::made);
-    work.reset();  // before anybody learns that the stage is done
-    queue_.done(stage, files, manifest);
 }
 
 }  // namespace hairbake

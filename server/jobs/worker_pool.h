@@ -43,11 +43,13 @@ private:
     void record(const ClaimedStage& stage, const Outcome& outcome);
     Outcome run_worker(const ClaimedStage& stage, WorkFolder& folder);
     std::string start(const ClaimedStage& stage, const WorkFolder& folder);
+    static std::vector<std::string> input_digests(const ClaimedStage& stage);
     std::string task_for(const ClaimedStage& stage);
-    void remove_spoiled_inputs(const std::vector<std::string>& digests);
-    std::string checked_manifest(const ClaimedStage& stage, const std::filesystem::path& folder);
     void note_leftover(const std::filesystem::path& folder);
     void remove_leftovers();
+    // worker_pool_results.cpp
+    void remove_spoiled_inputs(const std::vector<std::string>& digests);
+    std::string checked_manifest(const ClaimedStage& stage, const std::filesystem::path& folder);
     void check_fits(const std::vector<StageFile>& files, const std::filesystem::path& folder);
     std::uint64_t new_bytes(const std::vector<StageFile>& files, const std::filesystem::path& folder);
     void store_result(const ClaimedStage& stage, std::unique_ptr<WorkFolder> work);
