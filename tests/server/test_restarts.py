@@ -117,10 +117,15 @@ class Kills(unittest.TestCase):
             self.assertEqual(database.execute("PRAGMA integrity_check").fetchall(), [("ok",)])
             rows = {r[0] for r in database.execute("SELECT sha256 FROM blobs")}
             open_uploads = {r[0] for r in database.execute("SELECT id FROM uploads")}
+            sent = {r[0] for r in database.execute("SELECT sha256 FROM sent_blobs")}
+            results = {r[0] for r in database.execute("SELECT sha256 FROM stage_files")}
         self.assertIn(unfinished, open_uploads)
         self.assertEqual({f.name for f in (d.path / "store/uploads").iterdir()}, open_uploads)
         files = {f.name for f in (d.path / "store/blobs").rglob("*") if f.is_file()}
         self.assertEqual(rows, files)
+        self.assertLessEqual(set(self.blobs), sent)  # what was acknowledged is never evicted, and results are
+        self.assertLessEqual(sent, rows)
+        self.assertEqual(sent & results, set())
 
     def go_on(self, d, upload, state, piece):
         """Sends the next piece; True when the upload has become a blob. `state` keeps the offset that was answered last."""
