@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <functional>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <unordered_set>
@@ -181,9 +180,11 @@ public:
     void add(Sql& sql, const BakePlan& plan) {
         if (!bakes_.insert(plan.id.substr(0, known_digits)).second) return;
         done_ += !sql.rows("SELECT 1 FROM bakes WHERE id = ? AND state = 'done'", {plan.id}).empty();
-        for (const StagePlan& stage : plan.stages)
-            if (stages_.insert(stage.key.substr(0, known_digits)).second)
-                ++(is_stored(sql, stage) ? reused_ : computed_)[stage.kind];
+        for (const StagePlan& stage : plan.stages) {
+            if (!stages_.insert(stage.key.substr(0, known_digits)).second) continue;
+            Json& count = (is_stored(sql, stage) ? reused_ : computed_)[stage.kind];
+            count = count.get<std::int64_t>() + 1;
+        }
     }
 
     std::string text() const {
@@ -197,7 +198,7 @@ private:
 
     std::unordered_set<std::string> bakes_, stages_;  ///< beginnings of their ids
     std::int64_t done_ = 0;
-    std::map<std::string, std::int64_t> reused_, computed_;
+    Json reused_ = Json::object(), computed_;  ///< by kind, in the order in which the stages run
 };
 
 /// Others read and write meanwhile: a forecast of 100,000 bakes takes many seconds.
