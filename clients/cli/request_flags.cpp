@@ -20,7 +20,7 @@ struct FieldFlag {
 const std::vector<FieldFlag>& field_flags() {
     static const std::vector<FieldFlag> flags{
         {"--directions", {"transmittance.directions"}, "directions of the transmittance, 1 to 4096"},
-        {"--voxels", {"transmittance.voxels"}, "voxels on the longest axis, 32 to 1024"},
+        {"--voxels", {"transmittance.voxels"}, "voxels on the longest axis, 32 to 1024, or auto"},
         {"--width", {"strand.width"}, "strand diameter in the model's unit, instead of the file's"},
         {"--opacity", {"strand.opacity"}, "share of light that one crossing stops, 0 to 1, or from_file"},
         {"--specular-maps", {"irradiance.specular_maps"}, "number of specular maps, 2 to 257"},

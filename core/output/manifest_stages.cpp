@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 namespace hairbake {
 namespace {
@@ -50,6 +51,20 @@ Json error_bar(const ErrorBar& bar) {
 
 Json describe(const std::monostate&, const StagePart&, const BakeRequest&) { return Json::object(); }
 
+std::string_view reason_text(VoxelReason reason) {
+    switch (reason) {
+        case VoxelReason::asked:
+            return "as the request asks";
+        case VoxelReason::spacing:
+            return "auto: 0.8 times the distance between strands";
+        case VoxelReason::resolution:
+            return "auto: 25.6 times the square root of directions on the longest axis";
+        case VoxelReason::width:
+            return "twice the 95th percentile of the widths";
+    }
+    return {};
+}
+
 Json describe(const TransmittanceFacts& facts, const StagePart& part, const BakeRequest& request) {
     const std::vector<float>& average = find_array(part.arrays, average_transmittance_kind())->values;
     double sum = 0;
@@ -58,6 +73,7 @@ Json describe(const TransmittanceFacts& facts, const StagePart& part, const Bake
     Json block{{"vertices", average.size()},
                {"directions", facts.directions},
                {"voxel_size", facts.voxel_size},
+               {"voxel_reason", facts.voxel_size > 0 ? Json(reason_text(facts.voxel_reason)) : Json()},
                {"occupied_voxels", facts.occupied_voxels},
                {"mean", any ? Json(sum / static_cast<double>(average.size())) : Json()},
                {"minimum", any ? Json(*std::min_element(average.begin(), average.end())) : Json()},

@@ -62,7 +62,7 @@ void check_transmittance(const TransmittanceSettings& settings) {
         refuse("transmittance.directions", std::to_string(settings.directions),
                "a square number (1, 4, 9 ... 4096) with the direction set stratified");
     check_range("transmittance.seed", static_cast<double>(settings.seed), 0, 0x1p53 - 1);
-    check_range("transmittance.voxels", settings.voxels, 32, 1024);
+    if (settings.voxels) check_range("transmittance.voxels", *settings.voxels, 32, 1024);
     if (settings.voxel_size) check_positive("transmittance.voxel_size", *settings.voxel_size, 1e18);
     check_range("transmittance.sh_bands", settings.sh_bands, 0, 4);
     check_range("transmittance.opacity_maps.layers", settings.opacity_maps.layers, 1, 16);

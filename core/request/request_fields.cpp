@@ -89,7 +89,7 @@ std::vector<Field> hair_fields() {
                   {{"fibonacci", D::fibonacci}, {"stratified", D::stratified}, {"random", D::random}},
                   AT(transmittance.direction_set)),
         integer("transmittance.seed", AT(transmittance.seed)),
-        integer("transmittance.voxels", AT(transmittance.voxels)),
+        integer_or_auto("transmittance.voxels", AT(transmittance.voxels)),
         optional_number("transmittance.voxel_size", AT(transmittance.voxel_size)),
         integer("transmittance.sh_bands", AT(transmittance.sh_bands)),
         boolean("transmittance.bent_cone", AT(transmittance.bent_cone)),

@@ -125,6 +125,7 @@ void run_transmittance_stage(StageContext& context, StagePart& part) {
         });
     facts.directions = baked.directions;
     facts.voxel_size = baked.voxel_size;
+    facts.voxel_reason = baked.voxel_reason;
     facts.occupied_voxels = baked.occupied_voxels;
     facts.density = std::move(baked.density);
     add_arrays(baked, request, part);

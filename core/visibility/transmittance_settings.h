@@ -31,7 +31,7 @@ struct TransmittanceSettings {
     int directions = 100;  ///< 1 to 4096
     DirectionSet direction_set = DirectionSet::fibonacci;
     std::uint64_t seed = 1;            ///< of the stratified and random sets
-    int voxels = 256;                  ///< on the longest axis of the bounds, 32 to 1024
+    std::optional<int> voxels;         ///< on the longest axis of the bounds, 32 to 1024; empty: auto (grid_frame.h)
     std::optional<double> voxel_size;  ///< model units, instead of `voxels`; > 0
     int sh_bands = 0;                  ///< bands of directional transmittance, 1 to 4; 0 for none
     bool bent_cone = false;            ///< also bake bent cones

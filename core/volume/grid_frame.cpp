@@ -6,6 +6,7 @@
 
 #include "core/base/assert.h"
 #include "core/base/error.h"
+#include "core/volume/strand_spacing.h"
 
 namespace hairbake {
 
@@ -19,22 +20,42 @@ double typical_largest_width(const std::vector<float>& widths) {
     return ordered[rank];
 }
 
-GridFrame make_grid_frame(const StrandGeometry& strands, const TransmittanceSettings& settings) {
+namespace {
+
+/// Sets voxel_size and reason as the settings ask, without regard to the widths.
+void ask_for_voxels(const StrandGeometry& strands, const TransmittanceSettings& settings, double longest,
+                    const Progress& progress, GridFrame& frame) {
+    constexpr double of_spacing = 0.8, of_root = 25.6, most = 512;
+    frame.reason = VoxelReason::asked;
+    if (settings.voxel_size || settings.voxels) {
+        frame.voxel_size = settings.voxel_size ? *settings.voxel_size : longest / *settings.voxels;
+        return;
+    }
+    const double spacing = of_spacing * strand_spacing(strands, progress);
+    const double finest = longest / std::clamp(of_root * std::sqrt(double(settings.directions)), 32.0, most);
+    frame.voxel_size = std::max(spacing, finest);
+    frame.reason = spacing > finest ? VoxelReason::spacing : VoxelReason::resolution;
+}
+
+}  // namespace
+
+GridFrame make_grid_frame(const StrandGeometry& strands, const TransmittanceSettings& settings,
+                          const Progress& progress) {
     HAIRBAKE_ASSERT(strands.vertex_count() > 0);
     if (strands.vertex_count() >> 31)
         throw Error(ErrorKind::out_of_resources, "the hair model has " + std::to_string(strands.vertex_count()) +
                                                      " vertices; the volume method takes fewer than 2147483648");
-    if (!settings.voxel_size && (settings.voxels < 1 || settings.voxels > 1024))
+    if (!settings.voxel_size && settings.voxels && (*settings.voxels < 1 || *settings.voxels > 1024))
         throw Error(ErrorKind::usage,
-                    "transmittance.voxels is " + std::to_string(settings.voxels) + "; allowed are 32 to 1024",
+                    "transmittance.voxels is " + std::to_string(*settings.voxels) + "; allowed are 32 to 1024",
                     "transmittance.voxels");
     const Vec3d side = Vec3d(strands.bounds_max) - Vec3d(strands.bounds_min);
     const double longest = std::max({side.x, side.y, side.z});
-    const double asked = settings.voxel_size.value_or(longest / settings.voxels);
-    const double least = 2 * typical_largest_width(strands.widths);
     GridFrame frame;
+    ask_for_voxels(strands, settings, longest, progress, frame);
+    const double asked = frame.voxel_size, least = 2 * typical_largest_width(strands.widths);
+    if (least > asked) frame.reason = VoxelReason::width;
     frame.voxel_size = std::max(asked, least);
-    frame.bounded_by_width = least > asked;
     if (!(frame.voxel_size > 1e-30 && frame.voxel_size < 1e30))
         throw Error(ErrorKind::bad_input, "the hair model is " + std::to_string(longest) +
                                               " units large, which makes voxels of " +

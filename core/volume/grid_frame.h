@@ -5,21 +5,30 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/base/vec.h"
 #include "core/hair/strand_geometry.h"
 #include "core/visibility/transmittance_settings.h"
 
 namespace hairbake {
 
+/// What decided the size of the voxels.
+enum class VoxelReason {
+    asked,       ///< the request's voxels or voxel_size
+    spacing,     ///< auto: the distance between strands
+    resolution,  ///< auto: the number of directions
+    width        ///< the widths of the strands, in place of what was asked for
+};
+
 /// Grid space has its origin at `origin`, one voxel per unit, and the model's axes. Voxel (i, j, k) covers
 /// [i, i + 1) x [j, j + 1) x [k, k + 1). Bricks are blocks of 8^3 voxels, the leaves of OpenVDB.
 struct GridFrame {
     static constexpr int brick_side = 8;
 
-    Vec3f origin;                   ///< model space
-    double voxel_size = 1;          ///< h, model units
-    std::array<int, 3> bricks;      ///< per axis
-    bool bounded_by_width = false;  ///< the widths decided voxel_size, not the request
+    Vec3f origin;               ///< model space
+    double voxel_size = 1;      ///< h, model units
+    std::array<int, 3> bricks;  ///< per axis
+    VoxelReason reason = VoxelReason::asked;
 
     Vec3f to_grid(const Vec3f& p) const { return (p - origin) * static_cast<float>(1 / voxel_size); }
     int voxels(int axis) const { return bricks[axis] * brick_side; }
@@ -53,9 +62,16 @@ double typical_largest_width(const std::vector<float>& widths);
 
 /// The grid that `settings` asks for around all strands (at least one vertex), with a margin of one voxel. The mean
 /// field needs strands well thinner than a voxel: h = max(size asked for, 2 * 95th percentile of the widths).
+///
+/// `voxels` auto is a function of the model and the number of directions alone: h = max(0.8 * spacing, longest side /
+/// n), n = 25.6 sqrt(directions), at most 512. Voxels much finer than the distance between strands (strand_spacing.h)
+/// hold single strands, which the mean field takes for a mist: the error rises, by up to three times (docs/accuracy.md,
+/// section 2). Voxels that are narrower than the angle between directions gain nothing.
 /// Throws Error(usage) for voxels out of range and for more than 1,024 voxels on the longest axis.
 /// Throws Error(bad_input) for bounds that no grid can hold.
 /// Throws Error(out_of_resources) for 2^31 vertices or more.
-GridFrame make_grid_frame(const StrandGeometry& strands, const TransmittanceSettings& settings);
+/// Throws Error(cancelled).
+GridFrame make_grid_frame(const StrandGeometry& strands, const TransmittanceSettings& settings,
+                          const Progress& progress = Progress());
 
 }  // namespace hairbake

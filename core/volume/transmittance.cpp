@@ -108,7 +108,8 @@ Transmittance bake_transmittance_volume(const TransmittanceScene& scene, const T
     const HairVolume volume = make_hair_volume(scene.strands, settings, building);
     result.voxel_size = volume.frame.voxel_size;
     result.occupied_voxels = volume.bricks.occupied_voxels;
-    if (volume.frame.bounded_by_width)
+    result.voxel_reason = volume.frame.reason;
+    if (volume.frame.reason == VoxelReason::width && (settings.voxels || settings.voxel_size))
         result.warnings.push_back(
             "the strands are too wide for the voxels asked for: a voxel is twice the 95th "
             "percentile of the widths, " +

@@ -11,6 +11,7 @@
 #include "core/hair/strand_geometry.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/visibility/transmittance_settings.h"
+#include "core/volume/grid_frame.h"
 
 namespace hairbake {
 
@@ -43,8 +44,9 @@ struct Transmittance {
     std::vector<float> receiver;
     std::vector<NamedArray> others;  ///< of further functionals
     int directions = 0;
-    double voxel_size = 0;                       ///< effective h in model units; 0 for other methods than `volume`
-    std::uint64_t occupied_voxels = 0;           ///< voxels with extinction; 0 for other methods than `volume`
+    double voxel_size = 0;                          ///< effective h in model units; 0 for other methods than `volume`
+    VoxelReason voxel_reason = VoxelReason::asked;  ///< of the method `volume`
+    std::uint64_t occupied_voxels = 0;              ///< voxels with extinction; 0 for other methods than `volume`
     std::shared_ptr<const DensityGrid> density;  ///< the extinction of the sweep; null unless keep_density and `volume`
     std::vector<std::string> warnings;           ///< e.g. that the strands are too wide for the voxels asked for
 };

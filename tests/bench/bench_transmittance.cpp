@@ -3,6 +3,7 @@
 //   bench_transmittance [--quick]      (--quick: models of 200,000 vertices, 1,024 reference directions)
 //   bench_transmittance --speed        (the speed alone; with --quick after it: 200,000 vertices)
 //   bench_transmittance --opacity-maps (layered deep opacity maps beside the volume method, 200,000 vertices)
+//   bench_transmittance --presets      (draft, default and final on ten grooms; with --quick after it: 200,000 vertices)
 //   bench_transmittance --occluder     (the accuracy and time with an occluder alone)
 //   bench_transmittance --directional  (harmonics, bent cones and receivers alone; with --quick after it: 200,000
 //                                       vertices)
@@ -25,6 +26,8 @@ int main(int argc, char** argv) {
     std::printf("# Transmittance, %d threads\n", hairbake::thread_count());
     if (first == "--opacity-maps") {
         opacity_map_table();
+    } else if (first == "--presets") {
+        preset_table(options);
     } else if (first == "--occluder") {
         occluder_table(options);
     } else if (first == "--directional") {

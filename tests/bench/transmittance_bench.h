@@ -46,6 +46,7 @@ void occluder_table(const BenchOptions& options);
 void directional_tables(const BenchOptions& options);
 void speed_tables(const BenchOptions& options);
 void opacity_map_table();
+void preset_table(const BenchOptions& options);
 /// `program`: argv[0], which measures in processes of its own.
 void memory_table(const std::string& program, const BenchOptions& options);
 /// The work of such a process: prints one row. Returns the exit code.

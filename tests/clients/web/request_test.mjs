@@ -66,7 +66,7 @@ test('a preset and a change make a request of what differs', () => {
     const base = merged(first_values(schema), draft);
     const values = with_value(base, ['irradiance', 'sh_error'], 0.02);
     assert.deepEqual(build_request(schema, values), {
-        transmittance: { directions: 32, voxels: 128, reference_vertices: 64 },
+        transmittance: { directions: 32, reference_vertices: 64 },
         irradiance: { face_size: 8, specular_maps: 17, sh_error: 0.02 },
         outputs: ['npy', 'exr', 'hair', 'raw'],
     });

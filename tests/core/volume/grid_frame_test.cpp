@@ -22,7 +22,7 @@ TEST(GridFrame, DividesTheLongestSideIntoTheVoxelsAskedFor) {
     for (const int voxels : {32, 100, 256, 1024}) {
         const GridFrame frame = make_grid_frame(diagonal(1e-4), with_voxels(voxels));
         EXPECT_DOUBLE_EQ(frame.voxel_size, 4.0 / voxels);
-        EXPECT_FALSE(frame.bounded_by_width);
+        EXPECT_EQ(frame.reason, VoxelReason::asked);
     }
 }
 
@@ -37,11 +37,11 @@ TEST(GridFrame, KeepsVoxelsAtLeastTwiceAsLargeAsTheWidths) {
     for (const TransmittanceSettings& settings : {with_voxels(256), with_voxel_size(0.01)}) {
         const GridFrame frame = make_grid_frame(diagonal(0.1), settings);
         EXPECT_DOUBLE_EQ(frame.voxel_size, twice);
-        EXPECT_TRUE(frame.bounded_by_width);
+        EXPECT_EQ(frame.reason, VoxelReason::width);
     }
     const GridFrame frame = make_grid_frame(diagonal(0.1), with_voxel_size(0.25));
     EXPECT_DOUBLE_EQ(frame.voxel_size, 0.25);
-    EXPECT_FALSE(frame.bounded_by_width);
+    EXPECT_EQ(frame.reason, VoxelReason::asked);
 }
 
 TEST(GridFrame, TakesThe95thPercentileOfTheWidths) {
@@ -50,7 +50,7 @@ TEST(GridFrame, TakesThe95thPercentileOfTheWidths) {
         StrandModel model;
         for (int s = 0; s < 100; ++s) model.add(straight({0, 0.01 * s, 0}, {4, 0, 0}), s < wide ? 0.5 : 0.001);
         const GridFrame frame = make_grid_frame(model.geometry(), with_voxels(256));
-        EXPECT_EQ(frame.bounded_by_width, wide == 6);
+        EXPECT_EQ(frame.reason == VoxelReason::width, wide == 6);
         EXPECT_DOUBLE_EQ(frame.voxel_size, wide == 6 ? 1.0 : 4.0 / 256);
     }
 }

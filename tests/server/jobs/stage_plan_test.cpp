@@ -13,7 +13,7 @@ TEST(StagePlan, AStagePlannedFromItsOwnRequestHasTheSameKeys) {
     for (const auto& outputs :
          std::vector<std::vector<std::string>>{{"npy"}, {"ktx2", "npy"}, {"vdb"}, {"npy", "ktx2", "vdb"}, {}}) {
         request.outputs = outputs;
-        request.transmittance.voxels += 32;
+        request.transmittance.voxels = request.transmittance.voxels.value_or(64) + 32;
         for (const StagePlan& stage : plan_bake(request).stages) {
             const std::optional<StagePlan> again = plan_stage_again(stage.kind, stage.request);
             ASSERT_TRUE(again);
