@@ -103,7 +103,8 @@ TEST(EnvironmentSh, PythonReadsTheCoefficientsToTheLastBit) {
     write_environment_sh(std::get<IrradianceFacts>(small_result().parts[1].facts), {"Rec.2020", {}}, folder / "");
     const auto python = test_support::run_python(
         "import json, sys; m = json.load(open(sys.argv[1]))\n"
-        "assert m['bands'] == 2 and m['primaries'] == 'Rec.2020' and m['coefficients'] == [[1, 2, 3], [.1, .2, .3], [1e-20, 0, -5], [7, 8, 9]]\n"
+        "assert m['bands'] == 2 and m['primaries'] == 'Rec.2020' and m['coefficients'] == [[1, 2, 3], [.1, .2, .3], "
+        "[1e-20, 0, -5], [7, 8, 9]]\n"
         "print('read')",
         (folder / "environment_sh.json").string());
     EXPECT_EQ(python.output, "read\n");
