@@ -24,7 +24,8 @@ std::vector<Route> all_routes(Service& service, JsonBodies& bodies, Access& acce
 std::int64_t number_in_query(const HttpRequest& request, const std::string& name, std::int64_t low, std::int64_t high,
                              std::int64_t otherwise);
 
-/// Whether the query has the name, with any value but 0.
+/// Whether the query's value of the name is 1. It may be 0 or missing.
+/// Throws Refusal(unprocessable) for any other value.
 bool flag_in_query(const HttpRequest& request, const std::string& name);
 
 }  // namespace hairbake

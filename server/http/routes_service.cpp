@@ -50,7 +50,10 @@ std::int64_t number_in_query(const HttpRequest& request, const std::string& name
 
 bool flag_in_query(const HttpRequest& request, const std::string& name) {
     const auto found = request.query.find(name);
-    return found != request.query.end() && found->second != "0";
+    if (found == request.query.end() || found->second == "0") return false;
+    if (found->second == "1") return true;
+    throw Refusal(Refused::unprocessable, name + " is \"" + found->second.substr(0, 40) + "\"; allowed are 0 and 1",
+                  name);
 }
 
 std::vector<Route> service_routes(Service& service, Access& access, Metrics& metrics) {

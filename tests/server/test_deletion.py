@@ -56,6 +56,28 @@ class Deletion(unittest.TestCase):
             self.assert_files(d, bake)
             self.assertEqual(d.ask("POST", "/v1/bakes", quick_request(hair)).json["id"], alone["id"])
 
+    def test_a_flag_of_the_query_is_0_or_1(self):
+        # Relatives of force: dry_run and unneeded, and force of each kind of input.
+        with Daemon() as d:
+            hair, sky = d.put(hair_bytes()), d.put(hdr_bytes())
+            for path, digest in (("models", hair), ("environments", sky)):
+                self.assertEqual(d.ask("POST", f"/v1/{path}", {"sha256": digest}).status, 201)
+            bake = self.bake(d, quick_request(hair, sky))
+            rebake = {"environment": f"sha256:{d.put(hdr_bytes(red=99))}", "bakes": [bake["id"]]}
+            cases = (("DELETE", f"/v1/blobs/{hair}", "force", None), ("DELETE", f"/v1/models/{hair}", "force", None),
+                     ("DELETE", f"/v1/environments/{sky}", "force", None), ("POST", "/v1/rebakes", "dry_run", rebake),
+                     ("GET", "/v1/blobs", "unneeded", None))
+            for method, path, name, body in cases:
+                for value in ("false", "no", "", "true", "01", "2"):
+                    with self.subTest(path=path, name=name, value=value):
+                        reply = d.ask(method, f"{path}?{name}={value}", body)
+                        self.assertEqual((reply.status, reply.json.get("field")), (422, name), reply.body)
+                        self.assertIn(f'{name} is "{value}"; allowed are 0 and 1', reply.json["detail"])
+            self.assertEqual(len(d.ask("GET", "/v1/bakes").json["bakes"]), 1)
+            self.assertEqual([d.ask("HEAD", f"/v1/blobs/{digest}").status for digest in (hair, sky)], [200, 200])
+            self.assertEqual(d.ask("POST", "/v1/rebakes?dry_run=1", rebake).status, 200)
+            self.assertEqual(d.ask("POST", "/v1/rebakes?dry_run=0", rebake).status, 202)
+
     def test_an_input_that_any_version_of_a_name_means_is_deleted_by_force_alone(self):
         # Relatives: the newest version, an older one, two names, and names of a mesh.
         with Daemon() as d:
