@@ -6,6 +6,7 @@
 
 #include "core/base/digest.h"
 #include "server/jobs/bake_manifest.h"
+#include "server/jobs/page.h"
 #include "server/jobs/queue.h"
 #include "server/jobs/time_text.h"
 #include "server/store/blob_store.h"
@@ -17,17 +18,19 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// 0 id, 1 state, 2 request, 3 names, 4 hair, 5 environment, 6 priority, 7 attempts, 8 error, 9 created, 10 finished,
-// 11 seq
-constexpr const char* bake_columns =
-    "SELECT id, state, request, names, hair, environment, priority, attempts, error, created, finished, b.seq "
-    "FROM bakes b ";
+// 0 id, 1 state, 2 seq, 3 names, 4 hair, 5 environment, 6 priority, 7 attempts, 8 error, 9 created, 10 finished
+constexpr const char* short_columns =
+    "SELECT id, state, b.seq, names, hair, environment, priority, attempts, error, created, finished FROM bakes b ";
+// The same and 11 request, which may have 64 kB
+constexpr const char* all_columns =
+    "SELECT id, state, b.seq, names, hair, environment, priority, attempts, error, created, finished, request FROM "
+    "bakes b ";
 // Of the stages of a bake: 0 kind, 1 key, 2 state, 3 attempts, 4 started, 5 manifest
 constexpr const char* stage_rows =
     "SELECT s.kind, s.key, s.state, s.attempts, s.started, s.manifest FROM bake_stages m JOIN stages s ON s.key = "
     "m.stage WHERE m.bake = ? ORDER BY m.seq";
 
-std::vector<SqlRow> stages_of(Sql& sql, const SqlRow& bake) { return sql.rows(stage_rows, {bake.integer(11)}); }
+std::vector<SqlRow> stages_of(Sql& sql, const SqlRow& bake) { return sql.rows(stage_rows, {bake.integer(2)}); }
 
 [[noreturn]] void refuse_unknown(const std::string& id) {
     throw Refusal(Refused::not_found, "there is no bake " + id.substr(0, 64));
@@ -63,7 +66,7 @@ Json file_links(Sql& sql, const SqlRow& bake) {
     for (const SqlRow& file :
          sql.rows("SELECT m.kind, f.name, f.sha256, f.bytes FROM bake_stages m JOIN stage_files f ON f.stage = m.stage "
                   "WHERE m.bake = ? ORDER BY m.seq, f.name",
-                  {bake.integer(11)})) {
+                  {bake.integer(2)})) {
         const std::string name = file_name_in_bake(file.text(0), file.text(1));
         files.push_back({{"name", name}, {"sha256", file.text(2)}, {"bytes", file.integer(3)}, {"href", base + name}});
     }
@@ -109,7 +112,7 @@ Selection select_bakes(const BakeFilter& filter) {
         from = "JOIN bake_names m ON b.seq = m.seq WHERE m.seq < ? AND m.path = ?";
         order = " GROUP BY m.seq ORDER BY m.seq DESC LIMIT ?";
     }
-    Selection selection{bake_columns + from, {filter.cursor}};
+    Selection selection{short_columns + from, {filter.cursor}};
     const auto add = [&](const std::string& value, const char* condition) {
         if (value.empty()) return;
         selection.statement += condition;
@@ -142,7 +145,7 @@ Json full_view(Sql& sql, Queue& queue, const SqlRow& row) {
     }
     json["fraction"] = stages ? std::round(fraction / stages * 1000) / 1000 : 0;
     json["seconds_left"] = seconds_left > 0 ? Json(std::ceil(seconds_left)) : Json();
-    json["request"] = Json::parse(row.text(2));
+    json["request"] = Json::parse(row.text(11));
     json["files"] = row.text(1) == "done" ? file_links(sql, row) : Json::array();
     return json;
 }
@@ -150,7 +153,7 @@ Json full_view(Sql& sql, Queue& queue, const SqlRow& row) {
 std::string manifest_of(Sql& sql, const SqlRow& bake) {
     std::vector<StageManifest> parts;
     for (const SqlRow& stage : stages_of(sql, bake)) parts.push_back({stage.text(0), stage.text(5)});
-    return make_bake_manifest(bake.text(0), bake.text(2), parts);
+    return make_bake_manifest(bake.text(0), bake.text(11), parts);
 }
 
 }  // namespace
@@ -162,7 +165,7 @@ BakeView Bakes::get(const std::string& id) {
     BakeView answer;
     database_.read([&](Sql& sql) {
         version = database_.version_read();
-        const auto rows = sql.rows(std::string(bake_columns) + "WHERE id = ?", {id});
+        const auto rows = sql.rows(std::string(all_columns) + "WHERE id = ?", {id});
         if (rows.empty()) refuse_unknown(id);
         answer.json = full_view(sql, queue_, rows[0]).dump();
         done = rows[0].text(1) == "done";
@@ -174,23 +177,23 @@ BakeView Bakes::get(const std::string& id) {
 
 std::string Bakes::list(const BakeFilter& filter) {
     const Selection selection = select_bakes(filter);
-    Json answer{{"bakes", Json::array()}, {"next", nullptr}};
+    Page page("bakes", filter.limit);
     database_.read([&](Sql& sql) {
-        const auto rows = sql.rows(selection.statement, selection.values);
-        const auto limit = static_cast<std::size_t>(filter.limit);
-        for (std::size_t i = 0; i < std::min(limit, rows.size()); ++i) {
-            answer["bakes"].push_back(short_view(rows[i]));
-            if (!filter.name.empty()) show_name(sql, filter.name, answer["bakes"].back());
-        }
-        if (rows.size() > limit) answer["next"] = std::to_string(rows[limit - 1].integer(11));
+        sql.each(selection.statement, selection.values, [&](const SqlRow& row) {
+            if (!page.has_room()) return false;
+            Json view = short_view(row);
+            if (!filter.name.empty()) show_name(sql, filter.name, view);
+            page.add(view.dump(), std::to_string(row.integer(2)));
+            return true;
+        });
     });
-    return answer.dump();
+    return page.take_text();
 }
 
 BakeFile Bakes::file(const std::string& id, const std::string& name) {
     BakeFile file{name, {}, {}, {}};
     database_.read([&](Sql& sql) {
-        const auto rows = sql.rows(std::string(bake_columns) + "WHERE id = ?", {id});
+        const auto rows = sql.rows(std::string(all_columns) + "WHERE id = ?", {id});
         if (rows.empty()) refuse_unknown(id);
         const SqlRow& bake = rows[0];
         if (bake.text(1) != "done")

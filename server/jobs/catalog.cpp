@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "server/jobs/page.h"
 #include "server/jobs/runner.h"
 #include "server/jobs/task_follower.h"
 #include "server/jobs/time_text.h"
@@ -120,17 +121,16 @@ std::string Catalog::get(const std::string& kind, const std::string& digest) {
 }
 
 std::string Catalog::list(const std::string& kind, std::int64_t cursor, int limit) {
-    Json answer{{kind + "s", Json::array()}, {"next", nullptr}};
-    Json& entries = answer[kind + "s"];
+    Page page(kind + "s", limit);
     database_.read([&](Sql& sql) {
-        const auto rows = sql.rows(std::string(input_columns) + "WHERE kind = ? AND seq < ? ORDER BY seq DESC LIMIT ?",
-                                   {kind, cursor, std::int64_t(limit) + 1});
-        for (std::size_t i = 0; i < rows.size() && i < static_cast<std::size_t>(limit); ++i)
-            entries.push_back(entry(kind, rows[i]));
-        if (rows.size() > static_cast<std::size_t>(limit))
-            answer["next"] = std::to_string(rows[static_cast<std::size_t>(limit) - 1].integer(0));
+        sql.each(std::string(input_columns) + "WHERE kind = ? AND seq < ? ORDER BY seq DESC LIMIT ?",
+                 {kind, cursor, std::int64_t(limit) + 1}, [&](const SqlRow& row) {
+                     if (!page.has_room()) return false;
+                     page.add(entry(kind, row).dump(), std::to_string(row.integer(0)));
+                     return true;
+                 });
     });
-    return answer.dump();
+    return page.take_text();
 }
 
 std::string Catalog::thumbnail(const std::string& kind, const std::string& digest) {

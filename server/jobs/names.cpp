@@ -4,6 +4,7 @@
 #include <cctype>
 #include <nlohmann/json.hpp>
 
+#include "server/jobs/page.h"
 #include "server/jobs/time_text.h"
 #include "server/store/blob_store.h"
 #include "server/store/database.h"
@@ -99,18 +100,18 @@ std::string Names::get(const std::string& kind, const std::string& path) {
 
 std::string Names::list(const std::string& kind, const std::string& cursor, int limit) {
     if (!is_name_kind(kind)) check_name(kind, "x");
-    const auto most = static_cast<std::size_t>(limit);
-    Json answer{{"names", Json::array()}, {"next", nullptr}};
+    Page page("names", limit);
     database_.read([&](Sql& sql) {
-        const auto rows = sql.rows(
+        sql.each(
             "SELECT path, max(version), sha256, note, token, created FROM names WHERE kind = ? AND path > ? GROUP BY "
             "path ORDER BY path LIMIT ?",
-            {kind, cursor, std::int64_t(limit) + 1});
-        for (std::size_t i = 0; i < std::min(most, rows.size()); ++i)
-            answer["names"].push_back(version_json(kind, rows[i].text(0), rows[i], 1));
-        if (rows.size() > most) answer["next"] = rows[most - 1].text(0);
+            {kind, cursor, std::int64_t(limit) + 1}, [&](const SqlRow& row) {
+                if (!page.has_room()) return false;
+                page.add(version_json(kind, row.text(0), row, 1).dump(), row.text(0));
+                return true;
+            });
     });
-    return answer.dump();
+    return page.take_text();
 }
 
 NamedDigest resolve_name(Sql& sql, const std::string& kind, const std::string& name, const std::string& field) {

@@ -1,6 +1,7 @@
 // Stages that another version of hairbake has queued. The key of a stage tells its algorithm version, so the workers of
 // this version cannot make them. They are planned again from their requests.
 #include "server/jobs/queue.h"
+#include "server/store/blob_store.h"
 #include "server/store/database.h"
 
 namespace hairbake {

@@ -1,8 +1,8 @@
 #include "server/jobs/sent_blobs.h"
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "server/jobs/page.h"
 #include "server/jobs/time_text.h"
 #include "server/store/database.h"
 
@@ -35,16 +35,16 @@ Json entry(const SqlRow& row) {
 }  // namespace
 
 std::string list_sent_blobs(Database& database, const std::string& cursor, int limit, bool unneeded) {
-    const auto most = static_cast<std::size_t>(limit);
-    Json answer{{"blobs", Json::array()}, {"next", nullptr}};
+    Page page("blobs", limit);
     database.read([&](Sql& sql) {
-        const auto rows =
-            sql.rows(std::string(sent) + (unneeded ? without_references : "") + "ORDER BY bl.sha256 LIMIT ?",
-                     {cursor, std::int64_t(limit) + 1});
-        for (std::size_t i = 0; i < std::min(most, rows.size()); ++i) answer["blobs"].push_back(entry(rows[i]));
-        if (rows.size() > most) answer["next"] = rows[most - 1].text(0);
+        sql.each(std::string(sent) + (unneeded ? without_references : "") + "ORDER BY bl.sha256 LIMIT ?",
+                 {cursor, std::int64_t(limit) + 1}, [&](const SqlRow& row) {
+                     if (!page.has_room()) return false;
+                     page.add(entry(row).dump(), row.text(0));
+                     return true;
+                 });
     });
-    return answer.dump();
+    return page.take_text();
 }
 
 }  // namespace hairbake

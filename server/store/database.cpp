@@ -105,18 +105,29 @@ public:
     }
 
     std::vector<SqlRow> rows(std::string_view statement, const std::vector<SqlValue>& values) override {
+        std::vector<SqlRow> rows;
+        each(statement, values, [&](const SqlRow& row) {
+            rows.push_back(row);
+            return true;
+        });
+        return rows;
+    }
+
+    void each(std::string_view statement, const std::vector<SqlValue>& values,
+              const std::function<bool(const SqlRow&)>& take) override {
         try {
             SQLite::Statement& prepared = prepare(statement, values);
-            std::vector<SqlRow> rows;
+            const struct Reset {  // also when `take` throws or ends early
+                SQLite::Statement& statement;
+                ~Reset() { statement.tryReset(); }
+            } reset{prepared};
             const int columns = prepared.getColumnCount();
             while (prepared.executeStep()) {
                 std::vector<SqlValue> row;
                 row.reserve(static_cast<std::size_t>(columns));
                 for (int i = 0; i < columns; ++i) row.push_back(value_of(prepared.getColumn(i)));
-                rows.emplace_back(std::move(row));
+                if (!take(SqlRow(std::move(row)))) return;
             }
-            prepared.reset();
-            return rows;
         } catch (const SQLite::Exception& error) {
             fail(error);
         }

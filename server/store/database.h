@@ -41,6 +41,10 @@ public:
     /// Returns how many rows were changed. Each `?` in `statement` stands for the next of `values`.
     virtual int run(std::string_view statement, const std::vector<SqlValue>& values = {}) = 0;
     virtual std::vector<SqlRow> rows(std::string_view statement, const std::vector<SqlValue>& values = {}) = 0;
+    /// Gives `take` one row after the other until it returns false. Only one row is in memory. `take` may run other
+    /// statements, not this one.
+    virtual void each(std::string_view statement, const std::vector<SqlValue>& values,
+                      const std::function<bool(const SqlRow&)>& take) = 0;
 };
 
 /// What the owner of a database's folder checks. Empty functions check nothing; each may throw.

@@ -199,6 +199,65 @@ class LongBatches(Memory):
         self.check_growth("versions")
 
 
+class LongLists(Memory):
+    """The reply of a list holds text alone, and nothing that it does not show."""
+    READERS = 20
+
+    def read_by_many(self, path, name, count):
+        self.idle = self.daemon.memory_kb("VmRSS")
+
+        def read(_):
+            entries, cursor = [], ""
+            while cursor is not None:
+                reply = self.daemon.ask("GET", f"{path}?limit=1000" + (f"&cursor={cursor}" if cursor else ""))
+                self.assertEqual(reply.status, 200)
+                self.assertLess(len(reply.body), 600_000)
+                entries += reply.json[name]
+                cursor = reply.json["next"]
+            return len(entries)
+        with ThreadPoolExecutor(self.READERS) as pool:
+            self.assertEqual(set(pool.map(read, range(self.READERS * 3))), {count})
+        self.check_growth(path)
+
+    def fill(self, statement, rows):
+        self.daemon.stop()
+        with sqlite3.connect(self.daemon.path / "store/hairbake.db") as database:
+            database.executemany(statement, rows)
+        self.daemon.start()
+
+    def test_bakes_of_64_lights(self):
+        d = self.daemon
+        lights = [{"direction": [0.123456789, 1, 0], "irradiance": [1.23456789, 1, 1]}] * 64
+        request = quick_request(environment=d.put(hdr_bytes()), irradiance={"face_size": 4, "specular_maps": 3, "lights": lights})
+        bake = d.ask("POST", "/v1/bakes", request).json["id"]
+        self.assertEqual(d.wait(bake)["state"], "done")
+        with sqlite3.connect(d.path / "store/hairbake.db") as database:
+            names = ", ".join(row[1] for row in database.execute("PRAGMA table_info(bakes)") if row[1] not in ("id", "seq"))
+            self.assertGreater(len(database.execute("SELECT request FROM bakes").fetchone()[0]), 4000)
+        self.fill(f"INSERT INTO bakes(id, {names}) SELECT ?, {names} FROM bakes WHERE id = ?",
+                  [(f"{number:064x}", bake) for number in range(999)])
+        self.read_by_many("/v1/bakes", "bakes", 1000)
+
+    def test_names_with_long_notes(self):
+        """Relative: 1,000 entries are more than one page may hold, and the cursor leads through all of them."""
+        digest = self.daemon.put(hair_bytes())
+        self.fill("INSERT INTO names(kind, path, version, sha256, note, token, created) VALUES('model', ?, 1, ?, ?, 't', 0)",
+                  [(f"{number:04}" + "x" * 190, digest, "n" * 500) for number in range(1000)])
+        self.read_by_many("/v1/names/model", "names", 1000)
+
+    def test_bakes_of_long_errors(self):
+        """Relative: what fails shows its error in the list."""
+        d = self.daemon
+        bake = d.ask("POST", "/v1/bakes", quick_request(d.put(hair_bytes()))).json["id"]
+        self.assertEqual(d.wait(bake)["state"], "done")
+        with sqlite3.connect(d.path / "store/hairbake.db") as database:
+            names = ", ".join(row[1] for row in database.execute("PRAGMA table_info(bakes)") if row[1] not in ("id", "seq", "error"))
+        error = json.dumps({"kind": "internal", "message": "m" * 4000})
+        self.fill(f"INSERT INTO bakes(id, error, {names}) SELECT ?, ?, {names} FROM bakes WHERE id = ?",
+                  [(f"{number:064x}", error, bake) for number in range(999)])
+        self.read_by_many("/v1/bakes", "bakes", 1000)
+
+
 class HostileWorkers(unittest.TestCase):
     """Relative: what a worker writes is bounded too. The dump of deep values once ended the daemon."""
     RULES = """
