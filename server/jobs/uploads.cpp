@@ -185,7 +185,8 @@ Uploads::Appended Uploads::append(const std::string& id, std::uint64_t offset, s
     try {
         receive(state, length, read);
     } catch (const Refusal& refusal) {
-        if (refusal.why() == Refused::full) prolong(id);  // what was acknowledged waits for room
+        if (refusal.why() == Refused::full || refusal.why() == Refused::busy)
+            prolong(id);  // what was acknowledged waits for room
         throw;
     }
     const std::uint64_t size = size_on_disk(id);

@@ -33,7 +33,7 @@ Room::Share::Share(Share&& other) noexcept
       received_(other.received_) {}
 
 void Room::Share::promise(std::uint64_t bytes) {
-    room_->promise(bytes, counts_);
+    room_->promise(bytes, counts_, own());
     promised_ += bytes;
 }
 
@@ -50,18 +50,18 @@ void Room::Share::grow(std::uint64_t bytes) {
     }
     room_->arrive(bytes, counts_);
     received_ += bytes;
-    if (counts_) room_->make_room(0);
+    if (counts_) room_->make_room(0, own());
 }
 
 void Room::Share::count() {
     if (counts_) return;
     const auto held = room_->database_.lock();
-    room_->admit(promised_, [this](Counters& counters) {
+    room_->admit(promised_, own(), [this](Counters& counters) {
         counters.promised += promised_;
         counters.received += received_;
     });
     counts_ = true;
-    room_->make_room(0);
+    room_->make_room(0, own());
 }
 
 void Room::Share::give_back() {
@@ -87,14 +87,25 @@ void Room::Share::forget() {
     room_ = nullptr;
 }
 
+/// What this share adds to the room's counters.
+Room::Counters Room::Share::own() const {
+    Counters own;
+    if (counts_) {
+        own.promised = promised_;
+        own.received = received_;
+    }
+    own.unwritten = promised_ - received_;
+    return own;
+}
+
 Room::Share Room::reserve(std::optional<std::uint64_t> announced, bool is_stored) {
     Share share(*this, !is_stored);
     share.promise(announced.value_or(0));
     return share;
 }
 
-/// Promises `bytes` more of a body.
-void Room::promise(std::uint64_t bytes, bool counts) {
+/// Promises `bytes` more of a body, which has `own` already.
+void Room::promise(std::uint64_t bytes, bool counts, const Counters& own) {
     if (bytes == 0) return;
     const auto add = [&](Counters& counters) {
         if (counts) counters.promised += bytes;
@@ -102,24 +113,25 @@ void Room::promise(std::uint64_t bytes, bool counts) {
     };
     {
         const std::lock_guard lock(mutex_);
-        require_disk(counters_.unwritten + bytes);
+        const std::uint64_t others = counters_.unwritten + counters_.received - own.unwritten - own.received;
+        require_disk(counters_.unwritten + bytes, others);
         if (!counts || excess(counters_.promised + counters_.kept + bytes) == 0) return add(counters_);
     }
-    admit(bytes, add);
+    admit(bytes, own, add);
 }
 
 /// Calls `add` when `bytes` more fit into the budget after evictions. Holds the database's lock, so that bytes that
 /// have just become a blob are not counted twice, and what can be evicted stays the same.
-void Room::admit(std::uint64_t bytes, const std::function<void(Counters&)>& add) {
+void Room::admit(std::uint64_t bytes, const Counters& own, const std::function<void(Counters&)>& add) {
     const auto held = database_.lock();
     const std::lock_guard lock(mutex_);
-    require_evictable(excess(counters_.promised + counters_.kept + bytes), bytes);
+    require_evictable(excess(counters_.promised + counters_.kept + bytes), bytes, counters_.promised - own.promised);
     add(counters_);
 }
 
 void Room::arrive(std::uint64_t bytes, bool counts) {
     const std::lock_guard lock(mutex_);
-    require_disk(bytes);
+    require_disk(bytes, 0);
     counters_.unwritten -= bytes;
     if (counts) counters_.received += bytes;
 }
@@ -145,11 +157,18 @@ std::uint64_t Room::others() const {
     return counters_.received + counters_.kept;
 }
 
-void Room::make_room(std::uint64_t bytes) {
+void Room::make_room(std::uint64_t bytes) { make_room(bytes, {}); }
+
+void Room::make_room(std::uint64_t bytes, const Counters& own) {
     if (excess(others() + bytes) == 0) return;
     const auto held = database_.lock();
-    const std::uint64_t more = others() + bytes;
-    require_evictable(excess(more), bytes);
+    std::uint64_t more = bytes, under_way = 0;
+    {
+        const std::lock_guard lock(mutex_);
+        more += counters_.received + counters_.kept;
+        under_way = counters_.received - own.received;
+    }
+    require_evictable(excess(more), bytes, under_way);
     evict(database_, store_, limits_.budget, more);
 }
 
@@ -161,25 +180,36 @@ std::uint64_t Room::excess(std::uint64_t more) const {
     return all - std::min(all, limits_.budget);
 }
 
-/// `excess` must be evictable; `bytes` are wanted.
-void Room::require_evictable(std::uint64_t excess, std::uint64_t bytes) const {
+/// `excess` must be evictable; `bytes` are wanted. Other bodies have `under_way` bytes of the budget.
+void Room::require_evictable(std::uint64_t excess, std::uint64_t bytes, std::uint64_t under_way) const {
     if (excess == 0) return;
     const std::uint64_t evictable = evictable_bytes(database_, excess);
     if (evictable >= excess) return;
     const std::string wanted = bytes > 0 ? std::to_string(bytes) + " more bytes exceed" : "the bytes received exceed";
-    throw Refusal(Refused::full, wanted + " the store's budget of " + std::to_string(limits_.budget) + " bytes by " +
-                                     std::to_string(excess) + ", and results of at most " + std::to_string(evictable) +
-                                     " bytes can be evicted; inputs and what is being received are never evicted: "
-                                     "delete inputs (GET /v1/blobs lists them), or raise budget_mb");
+    const std::string found = wanted + " the store's budget of " + std::to_string(limits_.budget) + " bytes by " +
+                              std::to_string(excess) + ", and results of at most " + std::to_string(evictable) +
+                              " bytes can be evicted; ";
+    if (evictable + under_way >= excess)
+        throw Refusal(Refused::busy, found + std::to_string(under_way) +
+                                         " bytes are reserved for other bodies under way: try again when they have "
+                                         "ended, or raise budget_mb");
+    throw Refusal(Refused::full, found +
+                                     "inputs and what is being received are never evicted: delete inputs (GET "
+                                     "/v1/blobs lists them), or raise budget_mb");
 }
 
-/// `bytes` and those of keep_free must be free on the disk.
-void Room::require_disk(std::uint64_t bytes) const {
+/// `bytes` and those of keep_free must be free on the disk. Other bodies have `under_way` bytes of it.
+void Room::require_disk(std::uint64_t bytes, std::uint64_t under_way) const {
     const std::uint64_t free = free_bytes();
     if (free >= limits_.keep_free && free - limits_.keep_free >= bytes) return;
-    throw Refusal(Refused::full, "the store's disk has " + std::to_string(free) + " bytes free; needed are " +
-                                     std::to_string(bytes) + " for bodies under way, and keep_free_mb keeps " +
-                                     std::to_string(limits_.keep_free) + " free: make room on the disk");
+    const std::string found = "the store's disk has " + std::to_string(free) + " bytes free; needed are " +
+                              std::to_string(bytes) + " for bodies under way, and keep_free_mb keeps " +
+                              std::to_string(limits_.keep_free) + " free: ";
+    if (free + under_way >= limits_.keep_free + bytes)
+        throw Refusal(Refused::busy, found + std::to_string(under_way) +
+                                         " bytes are of other bodies: try again when they have ended, or make room "
+                                         "on the disk");
+    throw Refusal(Refused::full, found + "make room on the disk");
 }
 
 std::uint64_t Room::free_bytes() const {

@@ -23,8 +23,16 @@ struct RoomLimits {
     std::uint64_t keep_free = 0;  ///< bytes of the disk that bodies must leave free
 };
 
-/// Thread-safe. May be called with database.lock() held, but not inside database.read() or write().
+/// Refusal(full) means that stored files leave no room; Refusal(busy), that other bodies under way have it, which may
+/// be cut or refused: the client tries again. Thread-safe. May be called with database.lock() held, but not inside database.read() or write().
 class Room {
+    struct Counters {
+        std::uint64_t promised = 0;   ///< to counting bodies under way, with what they received
+        std::uint64_t received = 0;   ///< of counting bodies
+        std::uint64_t unwritten = 0;  ///< promised to all bodies and not received yet
+        std::uint64_t kept = 0;       ///< of unfinished uploads
+    };
+
 public:
     /// `folder` is the store's. The others must outlive this object.
     Room(Database& database, BlobStore& store, std::filesystem::path folder, const RoomLimits& limits);
@@ -40,12 +48,12 @@ public:
         ~Share() { give_back(); }
 
         /// Call it before `bytes` more are written. Evicts results when these bytes need their room.
-        /// Throws Refusal(full) when there is no room. A body whose length was announced gets here only if the room was
+        /// Throws Refusal(full or busy) when there is no room. A body whose length was announced gets here only if the room was
         /// lost meanwhile: a result was stored, or another program filled the disk.
         void grow(std::uint64_t bytes);
 
         /// The body's bytes are of a blob that is stored no longer: they count from now on.
-        /// Throws Refusal(full).
+        /// Throws Refusal(full or busy).
         void count();
 
         /// Call it with database.lock() held when the bytes have become a blob, or are gone.
@@ -59,6 +67,7 @@ public:
         Share(Room& room, bool counts) : room_(&room), counts_(counts) {}
         void promise(std::uint64_t bytes);
         void forget();
+        Counters own() const;
 
         Room* room_;                                 ///< nullptr when it was given back
         bool counts_;                                ///< against the budget
@@ -68,7 +77,7 @@ public:
     /// For a body of `announced` bytes, or of unknown length (chunks).
     ///
     /// `is_stored`: the blob is stored already, so the bytes need room on the disk alone, and only until they are checked.
-    /// Throws Refusal(full) when the announced bytes have no room, also if all results were evicted.
+    /// Throws Refusal(full or busy) when the announced bytes have no room, also if all results were evicted.
     Share reserve(std::optional<std::uint64_t> announced, bool is_stored = false);
 
     /// Notes how many bytes an unfinished upload has on the disk; 0 when it is gone.
@@ -76,7 +85,7 @@ public:
 
     /// Evicts results so that `bytes` more fit, which the caller stores before it gives database.lock() back. Evicts
     /// nothing when that is not enough.
-    /// Throws Refusal(full).
+    /// Throws Refusal(full or busy).
     void make_room(std::uint64_t bytes);
 
     /// Brings the store back into its budget as far as evictions can.
@@ -86,20 +95,15 @@ public:
     std::optional<std::string> warning();
 
 private:
-    struct Counters {
-        std::uint64_t promised = 0;   ///< to counting bodies under way, with what they received
-        std::uint64_t received = 0;   ///< of counting bodies
-        std::uint64_t unwritten = 0;  ///< promised to all bodies and not received yet
-        std::uint64_t kept = 0;       ///< of unfinished uploads
-    };
-    void promise(std::uint64_t bytes, bool counts);
-    void admit(std::uint64_t bytes, const std::function<void(Counters&)>& add);
+    void promise(std::uint64_t bytes, bool counts, const Counters& own);
+    void admit(std::uint64_t bytes, const Counters& own, const std::function<void(Counters&)>& add);
+    void make_room(std::uint64_t bytes, const Counters& own);
     void arrive(std::uint64_t bytes, bool counts);
     void set_kept(const std::string& upload, std::uint64_t bytes);
     std::uint64_t others() const;
     std::uint64_t excess(std::uint64_t more) const;
-    void require_evictable(std::uint64_t excess, std::uint64_t bytes) const;
-    void require_disk(std::uint64_t bytes) const;
+    void require_evictable(std::uint64_t excess, std::uint64_t bytes, std::uint64_t under_way) const;
+    void require_disk(std::uint64_t bytes, std::uint64_t under_way) const;
     std::uint64_t free_bytes() const;
 
     Database& database_;

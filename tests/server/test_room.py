@@ -52,11 +52,19 @@ class RoomTest(unittest.TestCase):
         self.assertEqual((reply.status, reply.headers["Content-Type"]), (507, "application/problem+json"), reply.body)
         self.assertEqual(reply.json["type"], "urn:hairbake:problem:full")
 
-    def assert_refused_before_the_body(self, d, begun):
+    def assert_busy(self, reply):
+        """Bodies under way have the room: the client tries again."""
+        self.assertEqual((reply.status, reply.json["type"]), (503, "urn:hairbake:problem:busy"), reply.body)
+        self.assertGreater(int(reply.headers["Retry-After"]), 0)
+        self.assertIn("bodies", reply.json["detail"])
+
+    def assert_refused_before_the_body(self, d, begun, status=507):
         """The reply comes although no byte of the body does."""
         with d.connect() as connection:
             connection.sendall(begun)
-            self.assertIn(b" 507 ", connection.recv(4096).splitlines()[0])
+            answer = connection.recv(4096)
+            self.assertIn(b" %d " % status, answer.splitlines()[0])
+            self.assertEqual(b"\r\nretry-after:" in answer.lower(), status == 503)
 
     @staticmethod
     def stored(d):
@@ -242,7 +250,8 @@ class BodiesUnderWay(RoomTest):
                 connection.sendall(head("PUT", f"/v1/blobs/{'1' * 64}", size))
                 connection.settimeout(0.2)
                 try:
-                    return b" 507 " not in connection.recv(4096)
+                    answer = connection.recv(4096)
+                    return b" 507 " not in answer and b" 503 " not in answer
                 except TimeoutError:
                     return True  # it waits for the body
         eventually(has_room)
@@ -269,15 +278,30 @@ class BodiesUnderWay(RoomTest):
                         file = d.path / "store/tmp"
                         eventually(lambda: [f.stat().st_size for f in file.iterdir()] == [len(data)])
                     other = os.urandom(600_000)
-                    self.assert_refused_before_the_body(d, head("PUT", f"/v1/blobs/{sha256(other)}", len(other)))
-                    self.assert_full(d.ask("PUT", f"/v1/blobs/{sha256(other)}", iter([other])))
+                    self.assert_refused_before_the_body(d, head("PUT", f"/v1/blobs/{sha256(other)}", len(other)), 503)
+                    self.assert_busy(d.ask("PUT", f"/v1/blobs/{sha256(other)}", iter([other])))
                     if name != "patch":  # of one token more than half of the budget is 429
-                        self.assert_full(d.create_upload(other))
+                        self.assert_busy(d.create_upload(other))
+                    self.assert_refused_before_the_body(d, head("PUT", f"/v1/blobs/{sha256(other)}", BUDGET + 1))
                     small = os.urandom(BUDGET - len(data) - 1000)
                     if name != "chunks":  # which may be promised up to the next MiB
                         self.assertEqual(d.ask("PUT", f"/v1/blobs/{sha256(small)}", small).status, 201)
                         eventually(lambda: d.ask("DELETE", f"/v1/blobs/{sha256(small)}").status == 204)
                 self.assert_room(d, BUDGET - (10 if name == "patch" else 0))  # of a cut upload the bytes that arrived stay
+
+    def test_a_refused_body_is_taken_when_the_other_has_ended(self):
+        # Relative: what stays is stored then, and the same request gets 507.
+        data, other = os.urandom(600_000), os.urandom(600_000)
+        path = f"/v1/blobs/{sha256(other)}"
+        with Daemon(config=SMALL) as d:
+            with under_way(d, head("PUT", f"/v1/blobs/{sha256(data)}", len(data)) + data[:10]):
+                eventually(lambda: d.leftovers())
+                self.assert_busy(d.ask("PUT", path, iter([other])))
+            eventually(lambda: d.leftovers() == [])
+            self.assertEqual(d.ask("PUT", path, other).status, 201)
+            self.assertEqual(d.ask("DELETE", path).status, 204)
+            d.put(data)
+            self.assert_full(d.ask("PUT", path, other))
 
     def test_all_room_comes_back_after_a_storm_of_bodies(self):
         """Whole, cut, refused and wrong bodies of four clients at once. Afterwards all of the budget is free again."""
@@ -378,7 +402,8 @@ class KeepFree(RoomTest):
             half = too_long // 2 + 1
             with under_way(d, head("PUT", f"/v1/blobs/{'0' * 64}", half)):
                 eventually(lambda: d.leftovers())
-                self.assert_refused_before_the_body(d, head("PUT", f"/v1/blobs/{'1' * 64}", half))
+                self.assert_refused_before_the_body(d, head("PUT", f"/v1/blobs/{'1' * 64}", half), 503)
+                self.assert_refused_before_the_body(d, head("PUT", f"/v1/blobs/{'1' * 64}", too_long))
             eventually(lambda: d.leftovers() == [])
             data = os.urandom(too_long + (1 << 20))
             self.assert_full(d.ask("PUT", f"/v1/blobs/{sha256(data)}", iter([data[i:i + 65536] for i in range(0, len(data), 65536)])))
