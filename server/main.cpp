@@ -111,11 +111,36 @@ Settings settings_of(const char* file) {
     return settings;
 }
 
+/// Calls `open`, which works on the store. A failure that the next start would meet again becomes Error(bad_input), so
+/// that systemd does not start the daemon again and again.
+template <class Open>
+auto opening(const Settings& settings, const Open& open) {
+    const std::string failed = "the store " + settings.store.string() + " cannot be opened: ";
+    const std::string database = (settings.store / "hairbake.db").string();
+    const auto stop = [&](const char* found, const std::string& advice) -> Error {
+        return {ErrorKind::bad_input, failed + found + ". " + advice};
+    };
+    const std::string check =
+        "Check owner, mode and kind of this file. If all are right, the database " + database + " may be spoiled. ";
+    try {
+        return open();
+    } catch (const SpoiledDatabase& error) {
+        throw stop(error.what(), "The file " + database + " is spoiled. " + advice_for_broken_database);
+    } catch (const Error& error) {
+        if (error.kind() == ErrorKind::internal) throw stop(error.what(), check + advice_for_broken_database);
+        if (error.kind() == ErrorKind::out_of_resources) throw Error(error.kind(), failed + error.what());
+        throw;
+    } catch (const std::filesystem::filesystem_error& error) {
+        throw stop(error.what(), check + advice_for_broken_database);
+    } catch (const std::logic_error& error) {  // a row holds another value than it may
+        throw stop(error.what(), check + advice_for_broken_database);
+    }
+}
+
 /// For a store whose start was stopped: see StoreIdentity.
-int accept_store(const char* file) {
+int accept_store(const Settings& settings) {
     ::umask(027);
-    const Settings settings = settings_of(file);
-    const StoreFolder folder(settings.store, settings.store_id);
+    const StoreFolder folder(settings.store, settings.store_id, StoreUse::accept);
     Database database(folder.database(), folder.hooks_to_accept());
     StoreIdentity::accept(folder.path(), database);
     std::printf("The folder %s and its database are one store now. Start the daemon.\n", settings.store.c_str());
@@ -195,7 +220,8 @@ int serve(const Settings& settings) {
     allow_many_files();
     give_back_freed_memory();
     prepare_signals();
-    Service service(settings);
+    const std::unique_ptr<Service> opened = opening(settings, [&] { return std::make_unique<Service>(settings); });
+    Service& service = *opened;
     Access access(settings.tokens);
     Metrics metrics;
     JsonBodies bodies(service.incoming_folder());
@@ -233,8 +259,10 @@ int main(int argc, char** argv) {
         if (argc == 2 && first == "routes") return print_routes();
         if (argc == 2 && first == "--version") return std::printf("hairbaked %s\n", HAIRBAKE_VERSION), 0;
         if (first == "store" && (argc == 3 || (argc == 5 && !std::strcmp(argv[3], "--config"))) &&
-            !std::strcmp(argv[2], "accept"))
-            return accept_store(argc == 5 ? argv[4] : nullptr);
+            !std::strcmp(argv[2], "accept")) {
+            const Settings settings = settings_of(argc == 5 ? argv[4] : nullptr);
+            return opening(settings, [&] { return accept_store(settings); });
+        }
         if (argc != 1 && !(argc == 3 && first == "--config")) {
             std::fputs(usage, stderr);
             return 2;

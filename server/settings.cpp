@@ -213,7 +213,8 @@ void complete(Settings& settings) {
     if (!settings.store_id.empty() && (settings.store_id.size() != 32 ||
                                        settings.store_id.find_first_not_of("0123456789abcdef") != std::string::npos))
         refuse("store.id", "is " + settings.store_id + "; allowed are 32 hexadecimal digits, as in the file store-id");
-    if (!fs::exists(settings.worker)) refuse("workers.program", settings.worker.string() + " does not exist");
+    if (std::error_code error; fs::is_directory(settings.worker, error))
+        refuse("workers.program", "is the folder " + settings.worker.string() + "; allowed is a program");
     settings.store = fs::absolute(settings.store);
 }
 

@@ -42,9 +42,10 @@ struct Settings {
     double keep_failed_s = 30 * 86400;           ///< how long failed and cancelled bakes and ended batches are kept
     // [workers]
     std::string runner = "local";  ///< of runner_names()
-    std::filesystem::path worker;  ///< hairbake-worker; by default beside the daemon
-    int workers = 0;               ///< at once; 0: half the cores, at least 1
-    int worker_threads = 0;        ///< of each; 0: cores / workers, at least 1
+    std::filesystem::path
+        worker;              ///< hairbake-worker; by default beside the daemon; while it is away, the queue pauses
+    int workers = 0;         ///< at once; 0: half the cores, at least 1
+    int worker_threads = 0;  ///< of each; 0: cores / workers, at least 1
     std::uint64_t memory_bytes = 8ull << 30;
     std::uint64_t cpu_seconds = 4 * 3600;
     double wall_seconds = 2 * 3600;

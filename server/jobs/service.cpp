@@ -64,6 +64,12 @@ struct Service::Parts {
         spdlog::warn("the store's generation cannot be recorded: {}", error.what());
     }
 
+    /// During an upgrade the worker program may be away. The service starts all the same, to serve what is stored.
+    void check_worker() try { runner->check_ready(); } catch (const Error& error) {
+        spdlog::warn("{}: {}; the queue is paused and tries again by itself", settings.worker.string(), error.what());
+        queue.pause({}, error.what());
+    }
+
     void boot() {
         const std::vector<StartedTask> surviving = surviving_tasks();
         std::set<std::string> spared;
@@ -81,6 +87,7 @@ struct Service::Parts {
         maintenance = std::make_unique<Maintenance>(database, identity, store, room, uploads, settings.keep_failed_s);
         scrub = std::make_unique<Scrub>(store, settings.scrub_s,
                                         [this](Sql& sql, const std::string& digest) { queue.blob_lost(sql, digest); });
+        check_worker();
         pool = std::make_unique<WorkerPool>(
             queue, *runner, database, store, room,
             WorkerPoolSettings{settings.runner, settings.workers, settings.worker_threads});

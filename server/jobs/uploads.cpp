@@ -67,9 +67,10 @@ void Uploads::recover() {
         database_.read([&](Sql& sql) {
             known = !sql.rows("SELECT 1 FROM uploads WHERE id = ?", {entry.path().filename().string()}).empty();
         });
-        if (known) continue;
+        const bool is_file = entry.symlink_status().type() == fs::file_type::regular;
+        if (known && is_file) continue;
         std::error_code error;  // the bytes of a second link stay where the other link is
-        if (entry.file_size(error) == 0 || entry.hard_link_count(error) > 1)
+        if (is_file && (entry.file_size(error) == 0 || entry.hard_link_count(error) > 1))
             remove_counted(entry.path(), removed);
         else
             store_.put_aside(entry.path(), unknown);
@@ -81,7 +82,7 @@ void Uploads::recover() {
             if (!fs::exists(folder_ / row.text(0))) sql.run("DELETE FROM uploads WHERE id = ?", {row.text(0)});
     });
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_))
-        room_.keep(entry.path().filename().string(), entry.file_size());
+        if (entry.is_regular_file()) room_.keep(entry.path().filename().string(), entry.file_size());
     expire();
     complete_whole_ones();
 }

@@ -46,8 +46,8 @@ std::size_t BlobStore::recover(const std::set<std::string>& spared, bool may_mis
         throw Error(ErrorKind::bad_input,
                     "the folder " + (folder_ / "blobs").string() + " holds none of the " + std::to_string(known) +
                         " files that the database knows. Nothing was changed or removed. Is its disk mounted? Put the "
-                        "files back. To go "
-                        "on without them, run `hairbaked store accept`: results are then baked again, and inputs must "
+                        "files back. To go on without them, run `hairbaked store accept --config FILE`: results are "
+                        "then baked again, and inputs must "
                         "be sent again");
     sweep_incoming(spared);
     clear_unknown_files(others);

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "server/store/schema.h"
+#include "server/store/store_access.h"
 
 namespace hairbake {
 
@@ -36,7 +37,9 @@ namespace {
         throw Error(ErrorKind::out_of_resources, "the disk of the store is full: the database cannot grow");
     if (code == SQLITE_READONLY || code == SQLITE_IOERR || code == SQLITE_CANTOPEN)
         throw Error(ErrorKind::out_of_resources, std::string("the database cannot be written: ") + error.what());
-    throw Error(ErrorKind::internal, std::string("the database: ") + error.what());
+    const std::string message = std::string("the database: ") + error.what();
+    if (code == SQLITE_CORRUPT || code == SQLITE_NOTADB) throw SpoiledDatabase(ErrorKind::internal, message);
+    throw Error(ErrorKind::internal, message);
 }
 
 SqlValue value_of(const SQLite::Column& column) {
@@ -171,23 +174,40 @@ void check_version(const std::filesystem::path& file, int version, int tables) {
                                               unchanged + "Start the newer program that made it");
 }
 
+/// SQLite opens a file that it may not write all the same, and fails later.
+void check_files(const std::filesystem::path& file) {
+    std::error_code missing;
+    const std::filesystem::path real = std::filesystem::canonical(file, missing);
+    for (const char* end : {"", "-wal", "-shm"})
+        check_access(file.parent_path(), (missing ? file : real).string() + end);
+}
+
+/// The file is not at fault then, so it must not be moved away.
+void throw_if_system_failed(const std::string& name, const SQLite::Exception& error) {
+    const int code = error.getErrorCode() & 0xff;
+    const std::string found = name + " cannot be opened: " + error.what();
+    if (code == SQLITE_FULL || code == SQLITE_NOMEM) throw Error(ErrorKind::out_of_resources, found);
+    if (code == SQLITE_CANTOPEN || code == SQLITE_READONLY || code == SQLITE_PERM || code == SQLITE_BUSY)
+        throw Error(ErrorKind::bad_input,
+                    found +
+                        ". Nothing was changed or removed. Check that the daemon's user may read and write it and "
+                        "its folder, and that no other program has it open");
+}
+
 }  // namespace
 
 Database::Database(const std::filesystem::path& file, DatabaseHooks hooks) : hooks_(std::move(hooks)) {
-    const std::string advice =
-        ". Nothing was removed. Move it away (with its -wal and -shm), restore a copy and run `hairbaked store "
-        "accept`: "
-        "the next start then moves files that the copy does not know to lost+found. Without a copy, move the whole "
-        "folder away and start with a new one: blobs/ in the old one still holds every input under its SHA-256";
+    check_files(file);
+    const std::string name = "the database " + file.string();
+    const std::string advice = std::string(". Nothing was removed. ") + advice_for_broken_database;
     const auto attempt = [&](const std::function<void()>& step) {
         try {
             step();
         } catch (const SQLite::Exception& error) {
-            throw Error(ErrorKind::bad_input,
-                        "the database " + file.string() + " cannot be opened: " + error.what() + advice);
+            throw_if_system_failed(name, error);
+            throw Error(ErrorKind::bad_input, name + " cannot be opened: " + error.what() + advice);
         } catch (const Error& error) {
-            throw Error(ErrorKind::bad_input,
-                        "the database " + file.string() + " is not whole: " + error.what() + advice);
+            throw Error(ErrorKind::bad_input, name + " is not whole: " + error.what() + advice);
         }
     };
     int version = 0, tables = 0;

@@ -13,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/base/error.h"
 #include "server/store/pinned_files.h"
 
 namespace hairbake {
@@ -33,8 +34,21 @@ private:
     std::vector<SqlValue> values_;
 };
 
+/// SQLite found the file spoiled; the kind is internal.
+class SpoiledDatabase : public Error {
+public:
+    using Error::Error;
+};
+
+/// What to do with a database that is broken.
+constexpr const char* advice_for_broken_database =
+    "Move it away (with its -wal and -shm), restore a copy and run `hairbaked store accept --config FILE`: the next "
+    "start then moves files that the copy does not know to lost+found. Without a copy, move the whole folder away and "
+    "start with a new one: blobs/ in the old one still holds every input under its SHA-256";
+
 /// Runs statements inside a transaction of Database. Statements are prepared once and kept.
-/// Throws Error(out_of_resources) for a full or read-only disk, Error(internal) for other failures.
+/// Throws Error(out_of_resources) for a full or read-only disk, SpoiledDatabase for a broken file, Error(internal) for
+/// other failures.
 class Sql {
 public:
     virtual ~Sql() = default;
@@ -58,8 +72,9 @@ struct DatabaseHooks {
 class Database {
 public:
     /// Opens or makes `file` and its tables; brings a database of an earlier version to this one.
-    /// Throws Error(bad_input), telling what to do, when the file is no database of the service, broken, or of a later
-    /// version.
+    /// Throws Error(bad_input), telling what to do, when the file is no database of the service, broken, of a later
+    /// version, or may not be read and written.
+    /// Throws Error(out_of_resources) when memory or disk are short.
     explicit Database(const std::filesystem::path& file, DatabaseHooks hooks = {});
     ~Database();
 

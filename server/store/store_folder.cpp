@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "server/store/store_access.h"
 #include "server/store/store_identity.h"
 
 namespace hairbake {
@@ -20,6 +21,10 @@ namespace {
 /// Folders whose files the daemon renames into each other.
 constexpr std::array parts{"blobs", "uploads", "tmp"};
 
+constexpr const char* advice_without_store =
+    "`hairbaked store accept --config FILE` takes a store that is there. Does [store] folder in FILE name the right "
+    "folder, and is its disk mounted? To make a new store, start the daemon";
+
 [[noreturn]] void stop_start(const std::string& found, const std::string& advice) {
     throw Error(ErrorKind::bad_input, found + ". Nothing was changed or removed. " + advice);
 }
@@ -27,8 +32,10 @@ constexpr std::array parts{"blobs", "uploads", "tmp"};
 /// Throws Error(usage) when another process holds the lock. File systems on which a folder cannot be locked have the
 /// file `lock` alone.
 Descriptor lock_path(const fs::path& path, int flags, const fs::path& store) {
+    check_access(store, path);
     Descriptor lock(::open(path.c_str(), flags | O_CLOEXEC, 0640));
     if (!lock) throw_store_error(path, errno);
+    give_owner_of(store, lock.get());
     if (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
         throw Error(ErrorKind::usage, "another hairbaked works on the store " + store.string());
     return lock;
@@ -65,11 +72,14 @@ std::string foreign_entry(const fs::path& folder) {
 
 }  // namespace
 
-StoreFolder::StoreFolder(fs::path folder, const std::string& expected_id)
-    : path_(std::move(folder)), expected_id_(expected_id) {
-    make_folder(path_);
+StoreFolder::StoreFolder(fs::path folder, const std::string& expected_id, StoreUse use)
+    : path_(std::move(folder)), expected_id_(expected_id), use_(use) {
+    if (std::error_code error; use_ == StoreUse::accept && fs::status(path_, error).type() == fs::file_type::not_found)
+        stop_start("the folder " + path_.string() + " does not exist", advice_without_store);
+    make_store_folder(path_, path_);
     folder_lock_ = lock_path(path_, O_RDONLY | O_DIRECTORY, path_);
     check_database_file();
+    check_parts();
     lock_ = lock_path(path_ / "lock", O_RDWR | O_CREAT, path_);
     make_parts();
     std::vector<fs::path> pinned{path_, path_ / "lock"};
@@ -93,6 +103,9 @@ void StoreFolder::check_database_file() const {
     std::error_code missing;
     const std::uintmax_t bytes = fs::file_size(database(), missing);
     if (!missing && bytes > 0) return;
+    if (missing && missing != std::errc::no_such_file_or_directory)
+        stop_start("the database " + database().string() + " cannot be read: " + missing.message(),
+                   "Put the database in its place");
     const fs::path log = database().string() + "-wal";
     std::error_code no_log;
     if (const std::uintmax_t logged = fs::file_size(log, no_log); !no_log && logged > 0)
@@ -109,8 +122,9 @@ void StoreFolder::check_before_new_database() const {
     if (has_id || blobs > 0 || uploads > 0)
         stop_start("the database " + database().string() + " is missing or empty, and the store's folder holds " +
                        std::to_string(blobs) + " files in blobs and " + std::to_string(uploads) + " in uploads",
-                   "Put the database back with its -wal, or restore a copy of it and run `hairbaked store accept`. "
-                   "Without a copy, move the whole folder away and start with a new one: blobs/ in the old one still "
+                   "Put the database back with its -wal, or restore a copy of it and run `hairbaked store "
+                   "accept --config FILE`. Without a copy, move the whole folder away and start with a new one: blobs/ "
+                   "in the old one still "
                    "holds every input under its SHA-256");
     if (const std::string entry = foreign_entry(path_); !entry.empty())
         stop_start("the folder " + folder + " is no store: it holds " + entry,
@@ -118,6 +132,8 @@ void StoreFolder::check_before_new_database() const {
     if (!expected_id_.empty())
         stop_start("the folder " + folder + " is empty; allowed is the store " + expected_id_ + " ([store] id)",
                    "Is its disk mounted? To make a new store there, remove id from the settings");
+    if (use_ == StoreUse::accept)
+        stop_start("the folder " + folder + " holds no store: it has no database", advice_without_store);
 }
 
 void StoreFolder::check_before_upgrade(int version) const {
@@ -128,9 +144,18 @@ void StoreFolder::check_before_upgrade(int version) const {
                    StoreIdentity::advice_for_copy);
 }
 
+/// The database checks its own files.
+void StoreFolder::check_parts() const {
+    check_access(path_, path_ / StoreIdentity::file_name, false);
+    for (const char* part : parts) check_access(path_, path_ / part);
+    std::error_code missing;
+    for (const fs::directory_entry& entry : fs::directory_iterator(path_ / "blobs", missing))
+        if (std::error_code error; entry.is_directory(error)) check_access(path_, entry.path());
+}
+
 /// Blobs and uploads are renamed and linked between the parts, so all must be on one device.
 void StoreFolder::make_parts() const {
-    for (const char* part : parts) make_folder(path_ / part);
+    for (const char* part : parts) make_store_folder(path_, path_ / part);
     const dev_t device = device_of(path_, 0);
     std::vector<fs::path> folders{path_ / "lost+found"};
     for (const char* part : parts) folders.push_back(path_ / part);

@@ -18,6 +18,9 @@
 
 namespace hairbake {
 
+/// For what a store is opened: `accept` makes no new one.
+enum class StoreUse { serve, accept };
+
 /// Locked by this process until the destructor. Immutable, so thread-safe.
 class StoreFolder {
 public:
@@ -27,8 +30,9 @@ public:
     /// `expected_id` is the id that the settings give, or empty. With one, no new store is made.
     /// Throws Error(usage) when another daemon works on the store.
     /// Throws Error(bad_input), telling what to do, when the database is missing or empty and the folder holds anything
-    /// else, and when a part of the store is on another device.
-    StoreFolder(std::filesystem::path folder, const std::string& expected_id);
+    /// else, when a part of the store is on another device, when this process may not read and write a part, and with
+    /// StoreUse::accept when the folder holds no store.
+    StoreFolder(std::filesystem::path folder, const std::string& expected_id, StoreUse use = StoreUse::serve);
 
     const std::filesystem::path& path() const { return path_; }
     std::filesystem::path database() const { return path_ / "hairbake.db"; }
@@ -45,10 +49,12 @@ private:
     void check_database_file() const;
     void check_before_new_database() const;
     void check_before_upgrade(int version) const;
+    void check_parts() const;
     void make_parts() const;
 
     std::filesystem::path path_;
     std::string expected_id_;
+    StoreUse use_;
     Descriptor folder_lock_, lock_;
     PinnedFiles pins_{{}};
 };

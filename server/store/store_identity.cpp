@@ -9,10 +9,12 @@
 #include <fstream>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "core/base/error.h"
 #include "server/store/database.h"
 #include "server/store/file_system.h"
+#include "server/store/store_access.h"
 
 namespace hairbake {
 namespace fs = std::filesystem;
@@ -20,22 +22,23 @@ namespace {
 
 constexpr const char* is_untouched = ". Nothing was changed or removed. ";
 constexpr const char* advice_to_accept =
-    "If both belong together all the same, run `hairbaked store accept`: the next start then moves files that the "
-    "database does not know to lost+found";
+    "If both belong together all the same, run `hairbaked store accept --config FILE`: the next start then moves "
+    "files that the database does not know to lost+found";
 
 }  // namespace
 
 /// Nothing when there is no file.
 std::optional<StoreIdentity::Mark> StoreIdentity::read_mark(const fs::path& folder) {
     const fs::path file = folder / file_name;
+    check_access(folder, file, false);
     if (!fs::exists(file)) return std::nullopt;
     std::ifstream stream(file);
     std::string id_word, generation_word;
     Mark mark;
     stream >> id_word >> mark.id >> generation_word >> mark.generation;
     if (!stream || id_word != "id" || generation_word != "generation" || mark.id.size() != 32)
-        throw Error(ErrorKind::bad_input, "the file " + file.string() + " cannot be read or is no id of a store" +
-                                              is_untouched + advice_to_accept);
+        throw Error(ErrorKind::bad_input,
+                    "the file " + file.string() + " is no id of a store" + is_untouched + advice_to_accept);
     return mark;
 }
 
@@ -46,6 +49,7 @@ void StoreIdentity::write_mark(const fs::path& folder, const Mark& mark) {
     try {
         const Descriptor written(::open(next.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0640));
         if (!written) throw_store_error(next, errno);
+        give_owner_of(folder, written.get());
         write_all(written.get(), std::as_bytes(std::span(text)), next);
         sync_file(written.get(), next);
         if (::rename(next.c_str(), file.c_str()) != 0) throw_store_error(file, errno);
@@ -60,9 +64,13 @@ StoreIdentity::StoreIdentity(fs::path folder, Database& database, const std::str
     : folder_(std::move(folder)), database_(database) {
     Mark row;
     database_.read([&](Sql& sql) {
-        const SqlRow stored = sql.rows("SELECT id, generation, accepted FROM store").at(0);
-        row = {stored.text(0), stored.integer(1)};
-        accepted_ = stored.integer(2) != 0;
+        const std::vector<SqlRow> rows = sql.rows("SELECT id, generation, accepted FROM store");
+        if (rows.empty())
+            throw Error(ErrorKind::bad_input, "the database in " + folder_.string() +
+                                                  " has lost the row of its table " + "store, which holds its id" +
+                                                  is_untouched + advice_to_accept);
+        row = {rows[0].text(0), rows[0].integer(1)};
+        accepted_ = rows[0].integer(2) != 0;
     });
     if (!expected_id.empty() && row.id != expected_id)
         throw Error(ErrorKind::bad_input, "the database in " + folder_.string() + " is of the store " + row.id +
@@ -121,13 +129,18 @@ void StoreIdentity::accept(const fs::path& folder, Database& database) {
     std::optional<Mark> mark;
     try {
         mark = read_mark(folder);
-    } catch (const Error&) {  // a file that cannot be read is replaced
+    } catch (const Error& error) {  // a file that is no id is replaced
+        if (error.system_error() != 0) throw;
     }
     Mark both;
     database.write([&](Sql& sql) {
-        const SqlRow row = sql.rows("SELECT id, generation FROM store").at(0);
-        both = {mark ? mark->id : row.text(0), std::max(row.integer(1), mark ? mark->generation : 0) + 1};
-        sql.run("UPDATE store SET id = ?, generation = ?, accepted = 1", {both.id, both.generation});
+        const std::vector<SqlRow> rows = sql.rows("SELECT id, generation FROM store");
+        if (mark) both = *mark;
+        if (!mark) both.id = rows.empty() ? random_name() : rows[0].text(0);
+        if (!rows.empty()) both.generation = std::max(both.generation, rows[0].integer(1));
+        ++both.generation;
+        sql.run("DELETE FROM store");
+        sql.run("INSERT INTO store(id, generation, accepted) VALUES(?, ?, 1)", {both.id, both.generation});
     });
     write_mark(folder, both);
 }

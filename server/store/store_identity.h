@@ -25,7 +25,8 @@ public:
     static constexpr const char* file_name = "store-id";
     static constexpr int first_version = 6;  ///< of the database: the first with a table `store`
     static constexpr const char* advice_for_copy =
-        "Put the newer database back with its -wal. To work with this one all the same, run `hairbaked store accept`: "
+        "Put the newer database back with its -wal. To work with this one all the same, run `hairbaked store accept "
+        "--config FILE`: "
         "the next start then moves files that the database does not know to lost+found";
 
     /// Compares folder and database; gives a new store, or one of an earlier version, its file. The caller has locked
@@ -45,7 +46,8 @@ public:
     void advance_if_changed();
 
     /// Makes the folder and the database one store of the present generation, whatever they were before. Keeps the
-    /// folder's id if it has one.
+    /// folder's id if it has one. When root runs it, the file gets the owner of the folder.
+    /// Throws Error(bad_input) when the file of the folder may not be read.
     static void accept(const std::filesystem::path& folder, Database& database);
 
 private:

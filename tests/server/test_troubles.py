@@ -110,6 +110,41 @@ class Troubles(unittest.TestCase):
             self.assert_all_done(d, bakes)
             self.assert_over(d)
 
+    def test_a_start_without_the_worker_program_serves_and_pauses_the_queue(self):
+        """Relatives: with and without a queued bake, and a program without the right to run it."""
+        with Queue(max_crashes=0) as d:
+            data = hair_bytes()
+            hair, bakes = d.put(data), []
+            for spoil, word in ((lambda: d.program.unlink(), "No such file or directory"),
+                                (lambda: d.program.chmod(0o600), "Permission denied")):
+                for queued in (False, True):
+                    with self.subTest(word, queued=queued):
+                        spoil()
+                        if queued:
+                            bakes += d.post(hair, 1, len(bakes))
+                        d.stop()
+                        (d.path / "log").write_text("")
+                        d.start()
+                        d.wait_for_log(f"{d.program}: the worker program cannot be started: {word}")
+                        self.assertEqual(d.ask("GET", f"/v1/blobs/{hair}").body, data)
+                        self.assertEqual(d.ask("GET", "/readyz").status, 503)
+                        if not queued:
+                            bakes += d.post(hair, 1, len(bakes))
+                        d.wait_for_pause(word)
+                        d.heal()
+                        self.assert_all_done(d, bakes)
+                        self.assert_over(d)
+
+    def test_relative_a_folder_in_place_of_the_worker_program_stops_the_start(self):
+        with Queue() as d:
+            d.stop()
+            d.program.unlink()
+            d.program.mkdir()
+            process = d.spawn()
+            self.assertEqual(process.wait(), 2)
+            process.stdout.close()
+            self.assertIn(f"workers.program is the folder {d.program}; allowed is a program", (d.path / "log").read_text())
+
     def test_relative_a_worker_program_that_cannot_run_or_ends_at_once(self):
         """During an upgrade: a file that is no program, without the right to run it, or whose libraries are missing. With
         libraries missing, the worker ends without a word; so it does on a processor that lacks an instruction."""
