@@ -1,5 +1,6 @@
 """A passing trouble of the machine: the queue pauses, says why, and goes on by itself. No bake fails."""
 import contextlib
+import http.client
 import os
 import resource
 import shutil
@@ -53,6 +54,17 @@ class Queue(Daemon):
             assert reply.status == 202, reply.body
             ids.append(reply.json["id"])
         return ids
+
+    def post_in_shortage(self, hair, seed):
+        """One bake, while the daemon may lack a thread for the connection: it then closes it, and the client asks again."""
+        end = time.monotonic() + PATIENCE
+        while True:
+            try:
+                return self.post(hair, 1, first=seed)
+            except (http.client.RemoteDisconnected, ConnectionResetError):
+                if time.monotonic() > end:
+                    raise
+                time.sleep(0.2)
 
     def wait_for_pause(self, word=""):
         """What /readyz says, once the queue is paused for a reason with that word."""
@@ -192,7 +204,7 @@ class Troubles(unittest.TestCase):
             daemon = len(os.listdir(f"/proc/{d.process.pid}/task"))
             for more in range(1, 9):  # the worker lacks its first thread, or a later one, as libraries start them
                 d.limit_processes(daemon + more)
-                bakes = d.post(hair, 1, first=10 * more)
+                bakes = d.post_in_shortage(hair, 10 * more)
                 if more < 4:
                     d.wait_for_pause()
                 else:  # how many threads it needs depends on the machine
