@@ -4,11 +4,10 @@
 #include <sstream>
 
 #include "core/base/assert.h"
+#include "core/environment/environment_map.h"
 
 namespace hairbake {
 namespace {
-
-using Matrix = std::array<Vec3d, 3>;  // rows
 
 struct Known {
     ToPrimaries target;
@@ -23,28 +22,25 @@ constexpr Known known[] = {
     {ToPrimaries::acescg, "ACEScg AP1", {.713f, .293f, .165f, .83f, .128f, .044f, .32168f, .33767f}},
 };
 
-constexpr Matrix bradford{Vec3d{0.8951, 0.2664, -0.1614}, Vec3d{-0.7502, 1.7135, 0.0367},
-                          Vec3d{0.0389, -0.0685, 1.0296}};
+constexpr Matrix3 bradford{Vec3d{0.8951, 0.2664, -0.1614}, Vec3d{-0.7502, 1.7135, 0.0367},
+                           Vec3d{0.0389, -0.0685, 1.0296}};
 
-Vec3d operator*(const Matrix& m, const Vec3d& v) { return {dot(m[0], v), dot(m[1], v), dot(m[2], v)}; }
-
-Matrix transpose(const Matrix& m) {
+Matrix3 transpose(const Matrix3& m) {
     return {Vec3d{m[0].x, m[1].x, m[2].x}, Vec3d{m[0].y, m[1].y, m[2].y}, Vec3d{m[0].z, m[1].z, m[2].z}};
 }
 
-Matrix operator*(const Matrix& a, const Matrix& b) {
-    const Matrix columns = transpose(b);
-    return transpose({a * columns[0], a * columns[1], a * columns[2]});
+Matrix3 operator*(const Matrix3& a, const Matrix3& b) {
+    return {transform_back(b, a[0]), transform_back(b, a[1]), transform_back(b, a[2])};
 }
 
-double determinant(const Matrix& m) { return dot(m[0], cross(m[1], m[2])); }
+double determinant(const Matrix3& m) { return dot(m[0], cross(m[1], m[2])); }
 
-Matrix inverse(const Matrix& m) {
+Matrix3 inverse(const Matrix3& m) {
     const double d = determinant(m);
     return transpose({cross(m[1], m[2]) / d, cross(m[2], m[0]) / d, cross(m[0], m[1]) / d});
 }
 
-Matrix scaling(const Vec3d& s) { return {Vec3d{s.x, 0, 0}, Vec3d{0, s.y, 0}, Vec3d{0, 0, s.z}}; }
+Matrix3 scaling(const Vec3d& s) { return {Vec3d{s.x, 0, 0}, Vec3d{0, s.y, 0}, Vec3d{0, 0, s.z}}; }
 
 /// XYZ with Y = y, so that primaries on the line y = 0 (ACES AP0 has one below it) stay finite.
 Vec3d xyz(const Chromaticities& c, int i) {
@@ -54,16 +50,16 @@ Vec3d xyz(const Chromaticities& c, int i) {
 
 Vec3d white_of(const Chromaticities& c) { return xyz(c, 3) / double(c[7]); }
 
-Matrix primaries_of(const Chromaticities& c) { return transpose({xyz(c, 0), xyz(c, 1), xyz(c, 2)}); }
+Matrix3 primaries_of(const Chromaticities& c) { return transpose({xyz(c, 0), xyz(c, 1), xyz(c, 2)}); }
 
 /// RGB to XYZ, white (1, 1, 1) at Y = 1 (SMPTE RP 177).
-Matrix to_xyz(const Chromaticities& c) {
-    const Matrix primaries = primaries_of(c);
-    return primaries * scaling(inverse(primaries) * white_of(c));
+Matrix3 to_xyz(const Chromaticities& c) {
+    const Matrix3 primaries = primaries_of(c);
+    return primaries * scaling(transform(inverse(primaries), white_of(c)));
 }
 
-Matrix adaptation(const Chromaticities& from, const Chromaticities& to) {
-    const Vec3d a = bradford * white_of(from), b = bradford * white_of(to);
+Matrix3 adaptation(const Chromaticities& from, const Chromaticities& to) {
+    const Vec3d a = transform(bradford, white_of(from)), b = transform(bradford, white_of(to));
     return inverse(bradford) * scaling({b.x / a.x, b.y / a.y, b.z / a.z}) * bradford;
 }
 
@@ -98,18 +94,18 @@ std::string fault_of(const Chromaticities& primaries) {
     for (const float value : primaries) ok &= std::isfinite(value) && std::abs(value) <= 10;
     if (ok) {
         // White must be a mixture of the three with positive shares.
-        const Matrix m = primaries_of(primaries);
+        const Matrix3 m = primaries_of(primaries);
         ok = std::abs(determinant(m)) > 1e-6 && primaries[7] > 1e-6f;
         if (ok) {
-            const Vec3d shares = inverse(m) * white_of(primaries);
-            const Vec3d cone = bradford * white_of(primaries);
+            const Vec3d shares = transform(inverse(m), white_of(primaries));
+            const Vec3d cone = transform(bradford, white_of(primaries));
             ok = shares.x > 0 && shares.y > 0 && shares.z > 0 && cone.x > 0 && cone.y > 0 && cone.z > 0;
         }
     }
     return ok ? std::string() : listed(primaries) + ": white is no mixture of these primaries";
 }
 
-std::array<Vec3d, 3> rgb_conversion(const Chromaticities& from, const Chromaticities& to) {
+Matrix3 rgb_conversion(const Chromaticities& from, const Chromaticities& to) {
     HAIRBAKE_ASSERT(fault_of(from).empty() && fault_of(to).empty());
     return inverse(to_xyz(to)) * adaptation(from, to) * to_xyz(from);
 }

@@ -29,7 +29,8 @@ std::optional<Chromaticities> chromaticities_of(ToPrimaries target);
 /// What a file means that names no primaries: those of Rec.709, as OpenEXR's documentation says.
 Chromaticities default_chromaticities();
 
-/// Empty where RGB of these primaries has a meaning; else the fault: "red 0 0, green ... span no colours".
+/// Empty where RGB of these primaries has a meaning; else the fault: "red 0 0, green ...: white is no mixture of these
+/// primaries".
 std::string fault_of(const Chromaticities& primaries);
 
 /// The matrix (rows) from linear RGB of `from` to linear RGB of `to`: over CIE XYZ, with the Bradford adaptation between

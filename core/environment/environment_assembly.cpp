@@ -70,8 +70,7 @@ void turn_openexr_cube(EnvironmentLayout requested, EnvironmentMap& map) {
     if (requested == EnvironmentLayout::vertical_strip) {
         map.warnings.push_back(
             "the EXR envmap attribute says cube map, whose faces OpenEXR orients in another way: they were taken in "
-            "the "
-            "orientation of OpenGL, as vertical_strip asks");
+            "the orientation of OpenGL, as vertical_strip asks");
         return;
     }
     const int size = map.width;
@@ -88,8 +87,7 @@ void turn_openexr_cube(EnvironmentLayout requested, EnvironmentMap& map) {
     }
     map.warnings.push_back(
         "the EXR envmap attribute says cube map: its faces were turned to the orientation of OpenGL, and its samples "
-        "on "
-        "the faces' edges were taken as half a texel inside");
+        "on the faces' edges were taken as half a texel inside");
 }
 
 // A photo of 4:3 has the shape of a cross. Outside the faces of a cross there is one colour.

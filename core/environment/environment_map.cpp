@@ -1,5 +1,4 @@
 #include "core/environment/environment_map.h"
-#include "core/base/assert.h"
 
 #include <algorithm>
 #include <cmath>
