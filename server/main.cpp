@@ -174,10 +174,8 @@ void wait_for_signal() {
 /// Ends the process after `patience` without waiting for slow clients and workers. Everything that was acknowledged is on
 /// the disk already.
 void end_hard_after(std::chrono::seconds patience) {
-    std::thread([patience] {
-        std::this_thread::sleep_for(patience);
-        _exit(0);
-    }).detach();
+    signal(SIGALRM, [](int) { _exit(0); });  // no thread: the system may give none
+    alarm(static_cast<unsigned>(patience.count()));
 }
 
 #ifdef HAIRBAKE_PLANTED_RACE
@@ -232,7 +230,7 @@ int serve(const Settings& settings) {
         [&](HttpRequest& request) { return answer(router, metrics, request); });
     std::atomic<bool> stopping = false;
     std::jthread serving([&] {
-        http_server.serve();
+        http_server.join();
         if (stopping) return;
         spdlog::critical("no connection can be accepted any more; the daemon ends, so that systemd starts it again");
         _exit(1);  // everything that was acknowledged is on the disk

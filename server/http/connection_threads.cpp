@@ -34,17 +34,21 @@ ConnectionThreads::ConnectionThreads(int listening, int threads, int waiting, Ha
     HAIRBAKE_ASSERT(threads >= 1 && waiting >= 1);
     idle_.reserve(threads_ + 1);  // no allocation later: a shortage of memory must not end a thread
     waiting_.reserve(most_waiting_);
+    running_.reserve(threads_ + 1);
+    try {
+        for (std::size_t i = 0; i <= threads_; ++i) running_.emplace_back([this] { work(); });
+    } catch (const std::system_error& error) {
+        stop();  // the members' destructors wait for the threads
+        throw std::system_error(error.code(), "the system gives no " + std::to_string(threads_ + 1) +
+                                                  " threads for connections (see [listen] threads)");
+    }
 }
 
-void ConnectionThreads::run() {
-    std::vector<std::jthread> others;
-    try {
-        for (std::size_t i = 0; i < threads_; ++i) others.emplace_back([this] { work(); });
-    } catch (...) {
-        stop();
-        throw;
-    }
-    work();
+ConnectionThreads::~ConnectionThreads() { stop(); }
+
+void ConnectionThreads::join() {
+    for (std::jthread& thread : running_)
+        if (thread.joinable()) thread.join();
 }
 
 void ConnectionThreads::stop() {

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <functional>
 #include <mutex>
+#include <thread>
 #include <vector>
 
 namespace hairbake {
@@ -18,16 +19,22 @@ public:
     /// Takes over an accepted connection's socket. Must not throw.
     using Handler = std::function<void(int socket)>;
 
-    /// `listening` is a socket that outlives this object.
+    /// Starts all threads, which accept from now on. `listening` is a socket that outlives this object.
     /// `threads` >= 1 connections are served at once.
     /// `waiting` >= 1 connections may be in the queue.
     /// `serve` and `refuse` handle a connection; one thread at a time calls `refuse`.
+    /// Throws std::system_error when the system gives no more threads; a connection that was accepted meanwhile is served.
     ConnectionThreads(int listening, int threads, int waiting, Handler serve, Handler refuse);
 
-    /// Accepts until stop() is called or the socket cannot accept any more. Returns when all accepted connections are
-    /// served and all threads have ended. Call it once.
-    void run();
-    /// Thread-safe; may be called before run().
+    /// Stops, and waits as join() does.
+    ~ConnectionThreads();
+    ConnectionThreads(const ConnectionThreads&) = delete;
+    ConnectionThreads& operator=(const ConnectionThreads&) = delete;
+
+    /// Waits until stop() is called or the socket cannot accept any more. Returns when all accepted connections are served
+    /// and all threads have ended. Call it from one thread.
+    void join();
+    /// Thread-safe.
     void stop();
 
 private:
@@ -49,6 +56,7 @@ private:
     std::size_t accepting_ = 0, serving_ = 0;     ///< threads
     std::vector<int> waiting_;                    ///< sockets; none while fewer than `threads` serve
     std::vector<std::condition_variable*> idle_;  ///< of sleeping threads; the last is woken first
+    std::vector<std::jthread> running_;           ///< the last member: they use the others
 };
 
 }  // namespace hairbake

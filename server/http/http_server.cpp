@@ -12,6 +12,7 @@
 #include <chrono>
 #include <exception>
 #include <limits>
+#include <optional>
 
 #include "core/base/error.h"
 #include "server/http/connection.h"
@@ -202,27 +203,24 @@ void remove_dead_socket(const std::string& path) {
 class HttpServer::Listener : public httplib::Server {
 public:
     Listener(const HttpServerSettings& settings, HttpServer::Handler handler)
-        : handler_(std::move(handler)),
-          accel_(settings.accel),
-          address_(bind(settings)),
-          listening_(svr_sock_.load()),
-          threads_(
-              listening_.get(), settings.threads, settings.waiting,
-              [this](int accepted) { or_drop([&] { serve_connection(accepted); }); },
-              [this](int accepted) { or_drop([&] { refuse_connection(accepted, lingering_); }); }) {
+        : handler_(std::move(handler)), accel_(settings.accel), address_(bind(settings)), listening_(svr_sock_.load()) {
         set_payload_max_length(std::numeric_limits<std::size_t>::max());  // the router limits bodies
         set_expect_100_continue_handler([](const httplib::Request&, httplib::Response&) { return 100; });
         handle_requests();
         handle_failures();
+        threads_.emplace(
+            listening_.get(), settings.threads, settings.waiting,
+            [this](int accepted) { or_drop([&] { serve_connection(accepted); }); },
+            [this](int accepted) { or_drop([&] { refuse_connection(accepted, lingering_); }); });
     }
 
     const std::string& address() const { return address_; }
 
-    void serve() { threads_.run(); }
+    void join() { threads_->join(); }
 
     void stop() {
         svr_sock_ = INVALID_SOCKET;  // the library reads it to see whether to continue a long body
-        threads_.stop();
+        threads_->stop();
     }
 
 private:
@@ -331,7 +329,8 @@ private:
     const std::string address_;
     const Descriptor listening_;
     Lingering lingering_{lingering, most_lingering};
-    ConnectionThreads threads_;
+    std::optional<ConnectionThreads>
+        threads_;  ///< the last member: they use the others, and start when those are ready
 };
 
 HttpServer::HttpServer(const HttpServerSettings& settings, Handler handler)
@@ -339,7 +338,7 @@ HttpServer::HttpServer(const HttpServerSettings& settings, Handler handler)
 HttpServer::~HttpServer() = default;
 
 std::string HttpServer::address() const { return listener_->address(); }
-void HttpServer::serve() { listener_->serve(); }
+void HttpServer::join() { listener_->join(); }
 void HttpServer::stop() { listener_->stop(); }
 
 }  // namespace hairbake

@@ -23,16 +23,17 @@ class HttpServer {
 public:
     using Handler = std::function<HttpReply(HttpRequest&)>;
 
-    /// Binds.
+    /// Binds and serves from now on.
     /// Throws Error(usage) when the address is in use or not allowed.
+    /// Throws std::system_error when the system gives no more threads.
     HttpServer(const HttpServerSettings& settings, Handler handler);
     ~HttpServer();
 
     /// "http://127.0.0.1:8080" or "unix:/run/hairbaked.sock".
     std::string address() const;
-    /// Serves until another thread calls stop(), or no connection can be accepted any more.
-    void serve();
-    /// May be called before serve().
+    /// Waits until stop() is called or no connection can be accepted any more, and all connections are served. Call it
+    /// from one thread.
+    void join();
     void stop();
 
 private:

@@ -122,6 +122,24 @@ class Troubles(unittest.TestCase):
             self.assert_all_done(d, bakes)
             self.assert_over(d)
 
+    def test_a_daemon_that_says_that_it_listens_has_all_its_threads(self):
+        """So a shortage that comes later cannot end it."""
+        with Queue() as d:
+            at_once = len(os.listdir(f"/proc/{d.process.pid}/task"))
+            d.put(hair_bytes())
+            time.sleep(1)
+            self.assertEqual(len(os.listdir(f"/proc/{d.process.pid}/task")), at_once)
+
+    def test_relative_a_start_without_threads_ends_with_the_reason(self):
+        with Queue() as d:
+            d.become_stranger()
+            d.stop()
+            d.before = [*d.as_stranger, "prlimit", "--nproc=20", "--"]
+            daemon = d.spawn()
+            self.assertEqual(daemon.communicate(timeout=PATIENCE)[0], b"")
+            self.assertEqual(daemon.returncode, 1)
+            d.wait_for_log("the system gives no 65 threads for connections (see [listen] threads): Resource temporarily")
+
     def test_a_start_without_the_worker_program_serves_and_pauses_the_queue(self):
         """Relatives: with and without a queued bake, and a program without the right to run it."""
         with Queue(max_crashes=0) as d:

@@ -90,7 +90,7 @@ struct Running {
         : threads(
               door.listening, count, waiting, [this](int socket) { house.serve(socket); },
               [this](int socket) { house.refuse(socket); }),
-          runner([this] { threads.run(); }) {}
+          runner([this] { threads.join(); }) {}
     ~Running() {  // when the test failed
         house.let_go();
         threads.stop();
@@ -109,13 +109,13 @@ struct Running {
     std::jthread runner;
 };
 
-/// Runs threads in this one: returns when they have ended.
-int served_by(int listening, bool stopped_before) {
+/// Returns when the threads have ended.
+int served_by(int listening, bool stopped) {
     House house;
     ConnectionThreads threads(
         listening, 4, 4, [&](int socket) { house.serve(socket); }, [&](int socket) { house.refuse(socket); });
-    if (stopped_before) threads.stop();
-    threads.run();
+    if (stopped) threads.stop();
+    threads.join();
     return house.served;
 }
 
@@ -165,7 +165,7 @@ TEST(ConnectionThreads, WhatWaitsIsServedAfterTheStop) {
     EXPECT_EQ(r.house.served, 4);
 }
 
-TEST(ConnectionThreads, EndAtOnceWhenTheyWereStoppedBefore) {
+TEST(ConnectionThreads, EndAtOnceWhenTheyAreStopped) {
     const Door door;
     EXPECT_EQ(served_by(door.listening, true), 0);
 }
