@@ -71,6 +71,8 @@ Json describe(const TransmittanceFacts& facts, const StagePart& part, const Bake
     for (const float a : average) sum += a;
     const bool any = !average.empty();
     Json block{{"vertices", average.size()},
+               {"method", name_in(transmittance_method_names, facts.method)},
+               {"method_reason", facts.method_reason},
                {"directions", facts.directions},
                {"voxel_size", facts.voxel_size},
                {"voxel_reason", facts.voxel_size > 0 ? Json(reason_text(facts.voxel_reason)) : Json()},

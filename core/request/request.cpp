@@ -117,7 +117,7 @@ void check_irradiance(const IrradianceSettings& settings) {
 
 void check_occluder(const BakeRequest& request) {
     if (request.occluder && request.transmittance.method == TransmittanceMethod::opacity_maps)
-        refuse("occluder", "given to the method opacity_maps", "an occluder with the methods volume and trace");
+        refuse("occluder", "given to the method opacity_maps", "an occluder with the methods auto, volume and trace");
 }
 
 void check_outputs(const BakeRequest& request) {
@@ -127,8 +127,9 @@ void check_outputs(const BakeRequest& request) {
         if (std::find(outputs.begin(), output, *output) != output) refuse("outputs", *output + " twice", "each once");
     }
     // This is known before the bake, so it is refused here.
-    if (request.hair && request.wants("vdb") && request.transmittance.method != TransmittanceMethod::volume)
-        refuse("outputs", "vdb with a transmittance.method that has no density grid", "vdb with the method volume");
+    if (request.hair && request.wants("vdb") && request.transmittance.method == TransmittanceMethod::opacity_maps)
+        refuse("outputs", "vdb with the method opacity_maps, which has no density grid",
+               "vdb with the methods auto, volume and trace");
 }
 
 }  // namespace

@@ -70,7 +70,6 @@ Field lights(const std::string& path) {
     [](auto& r) -> auto& { return r.member; }  // NOLINT(bugprone-macro-parentheses): a member cannot stand in them
 
 std::vector<Field> hair_fields() {
-    using T = TransmittanceMethod;
     using D = DirectionSet;
     return {
         optional_string("hair", AT(hair)),
@@ -81,9 +80,7 @@ std::vector<Field> hair_fields() {
         number("strand.width_scale", AT(strand.width_scale)),
         opacity("strand.opacity"),
         added(number("strand.time", AT(strand.time)), 0.0),
-        choice<T>("transmittance.method",
-                  {{"volume", T::volume}, {"opacity_maps", T::opacity_maps}, {"trace", T::trace}},
-                  AT(transmittance.method)),
+        choice("transmittance.method", transmittance_method_names, AT(transmittance.method)),
         integer("transmittance.directions", AT(transmittance.directions)),
         choice<D>("transmittance.direction_set",
                   {{"fibonacci", D::fibonacci}, {"stratified", D::stratified}, {"random", D::random}},

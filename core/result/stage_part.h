@@ -17,10 +17,12 @@ namespace hairbake {
 
 /// Facts about how the transmittance was computed.
 struct TransmittanceFacts {
+    TransmittanceMethod method = TransmittanceMethod::volume;  ///< the one that ran, never automatic
+    std::string method_reason;                                 ///< why it ran
     int directions = 0;
-    double voxel_size = 0;                          ///< effective h in model units; 0 for other methods than volume
-    VoxelReason voxel_reason = VoxelReason::asked;  ///< of the method volume
-    std::uint64_t occupied_voxels = 0;              ///< 0 for other methods than volume
+    double voxel_size = 0;                          ///< effective h in model units; 0 without voxels
+    VoxelReason voxel_reason = VoxelReason::asked;  ///< with voxels
+    std::uint64_t occupied_voxels = 0;              ///< 0 without voxels
     std::uint64_t degenerate_segments = 0;
     std::optional<ErrorBar> error_bar;           ///< with reference_vertices > 0
     std::shared_ptr<const DensityGrid> density;  ///< extinction of the sweep; null unless density.vdb is asked for

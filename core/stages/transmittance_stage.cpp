@@ -1,6 +1,7 @@
 // Computes A, the other arrays that the request asks for, and A's error bar from the hair in memory.
 #include <cstdio>
 #include <iterator>
+#include <memory>
 #include <numeric>
 #include <optional>
 
@@ -9,7 +10,10 @@
 #include "core/output/result_files.h"
 #include "core/reference/tracer.h"
 #include "core/stages/stage_table.h"
+#include "core/stages/transmittance_method.h"
 #include "core/visibility/direction_set.h"
+#include "core/volume/density_grid.h"
+#include "core/volume/hair_volume.h"
 #include "core/volume/opacity_transmittance.h"
 
 namespace hairbake {
@@ -20,7 +24,8 @@ Transmittance trace_all(const StrandScene& scene, const TransmittanceScene& bake
                         const TransmittanceSettings& settings, Progress& progress) {
     std::vector<std::uint32_t> vertices(scene.strands().vertex_count());
     std::iota(vertices.begin(), vertices.end(), 0u);
-    const auto directions = make_directions(settings.direction_set, settings.directions, settings.seed);
+    const int count = traced_directions(settings.directions);
+    const auto directions = make_directions(settings.direction_set, count, settings.seed);
     const double hair_share = baked.receiver ? 0.9 : 1.0;
     ProgressPart hair = progress.part(0, hair_share), receiver = progress.part(hair_share, 1);
     Transmittance transmittance;
@@ -32,20 +37,34 @@ Transmittance trace_all(const StrandScene& scene, const TransmittanceScene& bake
     if (baked.receiver)
         transmittance.receiver =
             trace_receiver(scene, *baked.receiver, baked.receiver_is_occluder, directions, receiver);
-    transmittance.directions = settings.directions;
+    transmittance.directions = count;
     return transmittance;
 }
 
-/// Runs the method of the request. Makes `scene` where that method is trace.
-Transmittance transmittance_of(const TransmittanceScene& baked, const TransmittanceSettings& settings,
-                               std::optional<StrandScene>& scene, Progress& progress) {
-    if (settings.method == TransmittanceMethod::trace) {
-        ProgressPart building = progress.part(0, 0.1), tracing = progress.part(0.1, 1);
+/// Adds density.vdb's grid, which tracing does not need.
+void add_density(const TransmittanceScene& baked, const TransmittanceSettings& settings, Transmittance& transmittance,
+                 Progress& progress) {
+    if (!baked.keep_density || baked.strands.vertex_count() == 0) return;
+    const HairVolume volume = make_hair_volume(baked.strands, settings, progress);
+    transmittance.voxel_size = volume.frame.voxel_size;
+    transmittance.voxel_reason = volume.frame.reason;
+    transmittance.occupied_voxels = volume.bricks.occupied_voxels;
+    transmittance.density = std::make_shared<const DensityGrid>(volume);
+}
+
+/// Runs `method`. Makes `scene` where that is trace.
+Transmittance transmittance_of(TransmittanceMethod method, const TransmittanceScene& baked,
+                               const TransmittanceSettings& settings, std::optional<StrandScene>& scene,
+                               Progress& progress) {
+    if (method == TransmittanceMethod::trace) {
+        ProgressPart building = progress.part(0, 0.1), tracing = progress.part(0.1, 0.95),
+                     grid = progress.part(0.95, 1);
         scene.emplace(baked.strands, building, baked.occluder);
-        return trace_all(*scene, baked, settings, tracing);
+        Transmittance traced = trace_all(*scene, baked, settings, tracing);
+        add_density(baked, settings, traced, grid);
+        return traced;
     }
-    if (settings.method == TransmittanceMethod::opacity_maps)
-        return bake_transmittance_opacity_maps(baked, settings, progress);
+    if (method == TransmittanceMethod::opacity_maps) return bake_transmittance_opacity_maps(baked, settings, progress);
     return bake_transmittance_volume(baked, settings, progress);
 }
 
@@ -111,7 +130,11 @@ void run_transmittance_stage(StageContext& context, StagePart& part) {
         what.receiver = context.inputs.receiver();
         what.receiver_is_occluder = context.inputs.receiver_is_occluder();
         what.keep_density = request.wants("vdb");
-        naming_file(*request.hair, [&] { baked = transmittance_of(what, settings, scene, progress); });
+        ChosenMethod chosen =
+            choose_method(settings.method, strands.vertex_count(), what.receiver ? what.receiver->positions.size() : 0);
+        naming_file(*request.hair, [&] { baked = transmittance_of(chosen.method, what, settings, scene, progress); });
+        facts.method = chosen.method;
+        facts.method_reason = std::move(chosen.reason);
         facts.degenerate_segments = strands.degenerate_segment_count;
     });
     part.warnings = std::move(baked.warnings);

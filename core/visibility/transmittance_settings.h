@@ -1,8 +1,11 @@
 // The request's `transmittance` block: how the light that reaches a vertex is computed, and which results are kept.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
+
+#include "core/base/names.h"
 
 namespace hairbake {
 
@@ -15,8 +18,13 @@ enum class DirectionSet {
 enum class TransmittanceMethod {
     volume,        ///< mean field: density grid, sheared sweep, near-field correction
     opacity_maps,  ///< layered deep opacity maps, the published estimator, for comparison
-    trace          ///< Embree traces every vertex against the true strands: slow, the reference
+    trace,         ///< Embree traces every vertex against the true strands: slow, the reference
+    automatic      ///< `auto`: trace for small models, else volume (core/stages/transmittance_method.h)
 };
+
+inline constexpr std::array transmittance_method_names{
+    EnumName{TransmittanceMethod::automatic, "auto"}, EnumName{TransmittanceMethod::volume, "volume"},
+    EnumName{TransmittanceMethod::opacity_maps, "opacity_maps"}, EnumName{TransmittanceMethod::trace, "trace"}};
 
 /// Settings of the method opacity_maps.
 struct OpacityMapSettings {
@@ -27,8 +35,8 @@ struct OpacityMapSettings {
 
 /// The request's `transmittance` block.
 struct TransmittanceSettings {
-    TransmittanceMethod method = TransmittanceMethod::volume;
-    int directions = 100;  ///< 1 to 4096
+    TransmittanceMethod method = TransmittanceMethod::automatic;
+    int directions = 100;  ///< 1 to 4096; a traced bake takes more (traced_directions())
     DirectionSet direction_set = DirectionSet::fibonacci;
     std::uint64_t seed = 1;            ///< of the stratified and random sets
     std::optional<int> voxels;         ///< on the longest axis of the bounds, 32 to 1024; empty: auto (grid_frame.h)

@@ -57,7 +57,8 @@ class Scene:
     def bake(self, name, sky=None, hair=None, head=False, **fields):
         """Folder and manifest of a bake of the wavy groom (or `hair`) with the report's strand settings; `head`: the head
         stops light."""
-        defaults = {"strand__width_scale": self.size.width_scale, "transmittance__reference_vertices": 0}
+        defaults = {"strand__width_scale": self.size.width_scale, "transmittance__method": "volume",
+                    "transmittance__reference_vertices": 0}
         defaults.update({"occluder": self.mesh} if head else {})
         folder = self.folder / "bake" / name
         manifest = self.hairbake.bake(folder, hair or self.hair, self.sky(sky) if sky else None, **{**defaults, **fields})

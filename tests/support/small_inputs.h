@@ -24,6 +24,7 @@ public:
         BakeRequest request;
         request.hair = (folder / "samples" / "groom.hair").string();
         request.environment = (folder / "samples" / "sky.hdr").string();
+        request.transmittance.method = TransmittanceMethod::volume;
         request.transmittance.directions = 16;
         request.transmittance.voxels = 32;
         request.transmittance.reference_vertices = 20;

@@ -53,7 +53,7 @@ inline BakeResult small_result() {
     bar.clear = {2, 0.004, 0.02, 0.005, {0.01, 0.03}, {0, 0.01}};
     bar.inside_strand = 1;
     bar.directions = 4096;
-    transmittance.facts = TransmittanceFacts{100, 0.5, VoxelReason::asked, 7, 1, bar, nullptr};
+    transmittance.facts = TransmittanceFacts{TransmittanceMethod::volume, "as the request asks", 100, 0.5, VoxelReason::asked, 7, 1, bar, nullptr};
     result.parts.push_back(transmittance);
 
     EnvironmentMap map;

@@ -106,7 +106,7 @@ TEST(RequestJson, WrongTypesAreNamedWithWhatIsAllowed) {
     expect_refused(R"({"transmittance": {"directions": 99999999999}})", "transmittance.directions", {});
     expect_refused(R"({"transmittance": {"seed": -1}})", "transmittance.seed", {});
     expect_refused(R"({"transmittance": {"method": "magic"}})", "transmittance.method",
-                   {"volume, opacity_maps, trace"});
+                   {"auto, volume, opacity_maps, trace"});
     expect_refused(R"({"irradiance": {"clamp_negative": 1}})", "irradiance.clamp_negative", {"true or false"});
     expect_refused(R"({"irradiance": {"rotation_deg": [1, 2]}})", "irradiance.rotation_deg", {"three numbers"});
     expect_refused(R"({"irradiance": {"sh_bands": 3}})", "irradiance.sh_bands", {"an object"});

@@ -78,7 +78,7 @@ TEST(Request, OpacityMapsTakeNoOccluder) {
     request.hair = "a.hair";
     request.occluder = "head.obj";
     request.transmittance.method = TransmittanceMethod::opacity_maps;
-    expect_refused(request, "occluder", {"opacity_maps", "volume and trace"});
+    expect_refused(request, "occluder", {"opacity_maps", "auto, volume and trace"});
     request.transmittance.method = TransmittanceMethod::trace;
     EXPECT_NO_THROW(validate(request));
 }
@@ -110,10 +110,12 @@ TEST(Request, AVdbNeedsTheMethodWithADensityGrid) {
     BakeRequest request = valid();
     request.outputs = {"vdb"};
     EXPECT_NO_THROW(validate(request));
-    for (const auto method : {TransmittanceMethod::trace, TransmittanceMethod::opacity_maps}) {
+    for (const auto method : {TransmittanceMethod::volume, TransmittanceMethod::trace}) {
         request.transmittance.method = method;
-        expect_refused(request, "outputs", {"no density grid", "volume"});
+        EXPECT_NO_THROW(validate(request));
     }
+    request.transmittance.method = TransmittanceMethod::opacity_maps;
+    expect_refused(request, "outputs", {"no density grid", "auto, volume and trace"});
     request.hair.reset();  // then there is no transmittance, and nothing to refuse
     request.environment = "a.hdr";
     EXPECT_NO_THROW(validate(request));
