@@ -16,6 +16,8 @@ struct EnumName {
     Enum value;
     std::string_view name;
 };
+template <class Enum>
+EnumName(Enum, const char*) -> EnumName<Enum>;  // clang 14, of the fuzz targets, cannot deduce it from an aggregate
 
 /// The name of `value`, which must be in the table.
 template <class Enum, std::size_t count>

@@ -52,7 +52,7 @@ void place_in_model(const GridFrame& frame, openvdb::FloatGrid& grid) {
 /// files seek.)
 class SeekableArchive : public openvdb::io::Archive {
 public:
-    void write(std::ostream& stream, const openvdb::GridBase::ConstPtr& grid) const {
+    void write_grid(std::ostream& stream, const openvdb::GridBase::ConstPtr& grid) const {
         Archive::write(stream, openvdb::GridCPtrVec{grid}, true);
     }
 };
@@ -95,7 +95,7 @@ float DensityGrid::density(int i, int j, int k) const { return impl_->grid->tree
 
 std::string DensityGrid::encode() const {
     std::ostringstream stream;
-    SeekableArchive().write(stream, impl_->grid);
+    SeekableArchive().write_grid(stream, impl_->grid);
     std::string bytes = std::move(stream).str();
     replace_tag(bytes);
     return bytes;
