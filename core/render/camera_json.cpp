@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "core/base/error.h"
+#include "core/base/json_reason.h"
 
 namespace hairbake {
 namespace {
@@ -62,7 +63,7 @@ Camera read_camera(const std::filesystem::path& file, const Vec3f& bounds_min, c
         orbit.fov_deg = object.value("fov_deg", orbit.fov_deg);
         return orbit_camera(orbit, bounds_min, bounds_max, aspect);
     } catch (const Json::exception& error) {
-        throw Error(ErrorKind::bad_input, file.string() + ": " + error.what());
+        throw Error(ErrorKind::bad_input, file.string() + ": " + json_reason(error));
     }
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/json_nesting.h"
+#include "core/base/json_reason.h"
 #include "core/request/request_fields.h"
 
 namespace hairbake {
@@ -128,7 +129,7 @@ std::vector<std::string> merge_json(BakeRequest& request, std::string_view text,
     try {
         merge.object(Json::parse(text), "");
     } catch (const Json::exception& error) {
-        throw Error(ErrorKind::usage, source + " is not JSON: " + error.what());
+        throw Error(ErrorKind::usage, source + " is not JSON: " + json_reason(error));
     } catch (const Error& error) {
         throw Error(error.kind(), source + ": " + error.what(), error.field());
     }

@@ -155,10 +155,12 @@ std::vector<Phase> planned_phases(std::span<const Stage* const> stages, const Ba
             if (planned.name == phase.name) return;
         phases.push_back(phase);
     };
+    for (const InputPhase& read : input_phases)
+        if (std::any_of(stages.begin(), stages.end(), [&](const Stage* stage) {
+                return std::find(stage->inputs.begin(), stage->inputs.end(), read.input) != stage->inputs.end();
+            }))
+            add(read.phase);
     for (const Stage* stage : stages) {
-        for (const InputPhase& read : input_phases)
-            if (std::find(stage->inputs.begin(), stage->inputs.end(), read.input) != stage->inputs.end())
-                add(read.phase);
         for (Phase phase : stage->phases) {
             if (phase.name == "reference" && request.transmittance.reference_vertices == 0) continue;
             if (phase.name == "transmittance" && request.transmittance.method == TransmittanceMethod::trace)

@@ -74,7 +74,8 @@ std::string bake_id(const StageKeys& keys, const BakeRequest& request);
 /// read give the same request.
 BakeRequest request_alone(const Stage& stage, const BakeRequest& request);
 
-/// The phases of a bake of these stages, in order: inputs are read when the first stage needs them; "write" is last.
+/// The phases of a bake of these stages, in order: all inputs are read first, so that a fault in one is known before the
+/// work; "write" is last.
 /// Shares sum to 1 and are rough.
 std::vector<Phase> planned_phases(std::span<const Stage* const> stages, const BakeRequest& request);
 
