@@ -6,6 +6,7 @@
 #include "core/base/parallel.h"
 #include "core/output/manifest.h"
 #include "core/output/result_files.h"
+#include "core/request/unused_fields.h"
 #include "core/stages/bake_inputs.h"
 #include "core/stages/stage_table.h"
 
@@ -36,6 +37,7 @@ void run(std::span<const Stage* const> stages, const BakeOptions& options, BakeP
     BakeInputs inputs(result.request, clock);
     StageContext context{result.request, inputs, clock};
     StageKeys keys;
+    result.warnings = request_warnings(result.request);
     inputs.read_for(stages);
     for (std::string& warning : inputs.take_warnings()) result.warnings.push_back(std::move(warning));
     for (std::size_t i = 0; i < stages.size(); ++i) {

@@ -109,9 +109,15 @@ void measure_all(IrradianceMaps& maps) {
     maps.interpolation_bound_relative = peak > 0 ? std::max({bound.x, bound.y, bound.z}) / peak : 0;
 }
 
+std::string degrees(double radians) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g degrees", radians * 180 / pi);
+    return text;
+}
+
 std::string percent(double ratio) {
     char text[32];
-    std::snprintf(text, sizeof text, "%.2g %%", 100 * ratio);
+    std::snprintf(text, sizeof text, ratio < 1 ? "%.2g %%" : "%.0f %%", 100 * ratio);
     return text;
 }
 
@@ -120,10 +126,9 @@ std::vector<std::string> warnings_of(const IrradianceMaps& maps, const Irradianc
     std::vector<std::string> warnings;
     const double texel = 2.0 / settings.face_size;
     if (texel > half_width)
-        warnings.push_back("a texel of the maps (" + std::to_string(texel * 180 / pi) +
-                           " degrees) is wider than the half-width of the specular lobe (" +
-                           std::to_string(half_width * 180 / pi) +
-                           " degrees): small lights will look blocky; raise irradiance.face_size");
+        warnings.push_back("a texel of the maps (" + degrees(texel) +
+                           ") is wider than the half-width of the specular lobe (" + degrees(half_width) +
+                           "): small lights will look blocky; raise irradiance.face_size");
     const double predicted = std::max(maps.predicted_error_diffuse, maps.predicted_error_specular);
     const bool automatic = !settings.sh_bands_diffuse || !settings.sh_bands_specular;
     if (settings.method == IrradianceMethod::sh && predicted > settings.sh_error)

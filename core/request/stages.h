@@ -52,6 +52,9 @@ std::string versions_text();
 /// Null where there is no stage of this name.
 const Stage* find_stage(std::string_view name);
 
+/// Whether the stage reads the field of this path ("transmittance.voxels"), an input or a setting. It reads no outputs.
+bool reads_field(const Stage& stage, std::string_view path);
+
 /// The stages that the request asks for, in the order of stages().
 std::vector<const Stage*> stages_of(const BakeRequest& request);
 
