@@ -1,8 +1,8 @@
 #include "core/render.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cctype>
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <new>
@@ -227,10 +227,10 @@ void check_render(const RenderRequest& request, const std::vector<fs::path>& fil
     for (const NamedInput& input : scene_files(request))
         for (const fs::path& file : files)
             if (std::error_code error; fs::equivalent(input.file, file, error))
-                throw Error(ErrorKind::usage,
-                            "out is " + file.string() + ", which is the input " + input.name +
-                                ": the picture would replace it",
-                            "out");
+                throw Error(
+                    ErrorKind::usage,
+                    "out is " + file.string() + ", which is the input " + input.name + ": the picture would replace it",
+                    "out");
     for (const fs::path& file : files) prove_file_writable(file);
 }
 

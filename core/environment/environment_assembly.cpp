@@ -144,9 +144,8 @@ void read_six_faces(const EnvironmentFiles& files, EnvironmentLayout requested, 
 
 EnvironmentMap assemble_picture(const std::filesystem::path& file, EnvironmentLayout requested, Progress& progress) {
     ProgressPart reading = progress.part(0, 0.9);
-    ImageFile image = read_one_picture(file, requested, [&](std::size_t, const SizeCheck& check) {
-        return read_image_file(file, check, reading);
-    });
+    ImageFile image = read_one_picture(
+        file, requested, [&](std::size_t, const SizeCheck& check) { return read_image_file(file, check, reading); });
     EnvironmentMap map;
     take_facts(image, map, progress);
     map.layout = layout_of_shape(image.width, image.height).value();  // `check` let no other shape pass

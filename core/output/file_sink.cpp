@@ -91,6 +91,11 @@ void discard_part(const std::filesystem::path& file) noexcept {
 void prove_file_writable(const std::filesystem::path& file) {
     std::error_code error;
     if (std::filesystem::is_directory(file, error)) throw_system_error(file, EISDIR);
+    const std::filesystem::path parent = file.parent_path();
+    if (!parent.empty() && std::filesystem::status(parent, error).type() == std::filesystem::file_type::not_found)
+        throw Error(ErrorKind::bad_input,
+                    file.string() + " cannot be written: there is no folder " + parent.string() + "; make it first",
+                    "out", ENOENT);
     write_part(file, {});
     discard_part(file);
 }

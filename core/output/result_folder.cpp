@@ -109,7 +109,11 @@ void check_result_folder(const fs::path& folder) {
     }
 }
 
-void prove_writable(const fs::path& folder) { const ResultFolder made_and_removed(folder); }
+void prove_writable(const fs::path& folder) try {
+    const ResultFolder made_and_removed(folder);
+} catch (const Error& error) {
+    throw Error(error.kind(), error.what(), "out", error.system_error());
+}
 
 void check_outside(const fs::path& folder, std::span<const NamedInput> inputs) {
     std::error_code error;
