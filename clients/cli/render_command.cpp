@@ -4,6 +4,7 @@
 
 #include "clients/cli/commands.h"
 #include "clients/cli/common_flags.h"
+#include "clients/cli/exit_code.h"
 #include "clients/cli/messages.h"
 #include "clients/cli/option_values.h"
 #include "clients/cli/output.h"
@@ -63,7 +64,7 @@ RenderRequest make_request(const RenderOptions& options) {
     return request;
 }
 
-void run(const RenderOptions& options) {
+void run_render(const RenderOptions& options) {
     const RenderRequest request = make_request(options);
     const std::optional<double> exposure = parse_exposure(options.exposure);
     warn_of_threads(options.threads);
@@ -93,6 +94,10 @@ void run(const RenderOptions& options) {
         std::snprintf(text, sizeof text, ": %d x %d pixels, %d samples each, in %.2f s; exposure %+.2f stops",
                       picture.width, picture.height, request.frame.samples, picture.render_seconds, stops);
     print_line((options.progress == "json" ? "" : names) + text);
+}
+
+void run(const RenderOptions& options) {
+    with_json_failures(options.progress, [&] { run_render(options); });
 }
 
 void add_scene_options(CLI::App& command, RenderOptions& options) {
