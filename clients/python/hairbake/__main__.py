@@ -97,6 +97,8 @@ def set_field(request: Dict[str, Any], setting: str) -> None:
         parsed = json.loads(value)
     except (ValueError, RecursionError):
         parsed = float(value) if NUMBER.fullmatch(value) else value
+    if isinstance(parsed, float) and parsed.is_integer():
+        parsed = int(parsed)  # the service takes no 7.0 for a whole number
     first, _, name = path.partition(".")
     if first == "irradiance" and name in MOVED:
         print(f"hairbake: warning: {path} is deprecated: the field is now {MOVED[name]}", file=sys.stderr)

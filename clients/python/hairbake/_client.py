@@ -9,10 +9,10 @@ import time
 from pathlib import Path
 from typing import Any, Callable, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Union
 
-from ._errors import BakeCancelled, BakeFailed, HairbakeError, Refused, UsageError, plain, words_of
+from ._errors import BakeCancelled, BakeFailed, HairbakeError, Refused, UsageError, plain
 from ._fetch import Result, fetch_result
 from ._http import Http, Json, identifier
-from ._upload import send_if_lacking
+from ._upload import check_file, send_if_lacking
 
 PathLike = Union[str, "os.PathLike[str]"]
 Progress = Callable[[str, float], None]  #: stage ("upload", "bake", "fetch") and its fraction
@@ -73,18 +73,11 @@ def read_token(file: PathLike) -> str:
 
 
 def check_files(inputs: Mapping[str, PathLike]) -> None:
-    """Checks that every input (by the name of its field) that is no reference is a file that can be opened, before any of
-    them is sent. Raises HairbakeError."""
+    """Checks every input (by the name of its field) that is no reference, before any of them is sent. Raises
+    HairbakeError."""
     for field, value in inputs.items():
-        if REFERENCE.match(os.fspath(value)):
-            continue
-        try:
-            if Path(value).is_dir():
-                raise UsageError(f"{field} is {value}, a folder; allowed is a file", field)
-            if not Path(value).is_fifo():
-                open(value, "rb").close()
-        except OSError as error:
-            raise HairbakeError(words_of(error, value), field) from error
+        if not REFERENCE.match(os.fspath(value)):
+            check_file(Path(value), field)
 
 
 def _bake(view: Any) -> Bake:
