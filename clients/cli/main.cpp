@@ -61,12 +61,17 @@ int main(int argc, char** argv) {
     hairbake::add_upload_command(app, action);
     hairbake::add_delete_command(app, action);
     app.footer(hairbake::remote_exit_code_help());
+    const auto arguments = std::span<char* const>(argv, static_cast<std::size_t>(argc)).subspan(argc > 0 ? 1 : 0);
+    if (const std::string mistake = hairbake::words_for_one_dash(app, arguments); !mistake.empty()) {
+        hairbake::say_error(mistake);
+        return static_cast<int>(hairbake::ExitCode::usage);
+    }
     try {
         app.parse(argc, argv);
         action();
         return static_cast<int>(hairbake::ExitCode::ok);
     } catch (const CLI::ParseError& error) {
-        return end_parsing(error, app, std::span(argv, static_cast<std::size_t>(argc)).subspan(argc > 0 ? 1 : 0));
+        return end_parsing(error, app, arguments);
     } catch (...) {
         return report_failure();
     }

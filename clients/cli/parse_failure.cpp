@@ -91,6 +91,17 @@ std::string wrong_count(const CLI::ParseError& error, const CLI::App& command) {
 
 }  // namespace
 
+std::string words_for_one_dash(const CLI::App& app, std::span<char* const> arguments) {
+    for (const std::string word : arguments) {
+        if (!word.starts_with("-h") || word.size() == 2) continue;
+        const std::string first = arguments[0];
+        for (const CLI::App* command : commands_of(app))
+            if (command->get_name() == first) return unknown_option(word, *command, app);
+        return unknown_option(word, app, app);
+    }
+    return {};
+}
+
 std::string words_for(const CLI::ParseError& error, const CLI::App& app, std::span<char* const> arguments) {
     if (const std::string unknown = unknown_words(app, arguments); !unknown.empty()) return unknown;
     const CLI::App& command = command_of(app);

@@ -16,4 +16,7 @@ namespace hairbake {
 ///   arguments: those of main(), without the program
 std::string words_for(const CLI::ParseError& error, const CLI::App& app, std::span<char* const> arguments);
 
+/// "-hair" where "--hair" was meant: the parser would take it for -h and show the help. Empty where there is none.
+std::string words_for_one_dash(const CLI::App& app, std::span<char* const> arguments);
+
 }  // namespace hairbake

@@ -50,6 +50,8 @@ std::string text_of(const std::string& file) {
     constexpr std::size_t most = 1 << 20;
     std::string text(most + 1, '\0');
     stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    if (stream.bad())
+        throw Error(ErrorKind::bad_input, file + ": " + std::generic_category().message(errno), "request");
     text.resize(static_cast<std::size_t>(stream.gcount()));
     if (text.size() > most) throw Error(ErrorKind::usage, file + " is too long; allowed are 1 MiB", "request");
     return text;
@@ -58,7 +60,7 @@ std::string text_of(const std::string& file) {
 /// "path=value" of --set.
 std::pair<std::string, std::string> split_setting(const std::string& setting) {
     const std::size_t sign = setting.find('=');
-    if (sign == std::string::npos)
+    if (sign == std::string::npos || sign == 0)
         throw Error(ErrorKind::usage, "--set " + setting + " is not of the form path=value", "set");
     return {setting.substr(0, sign), setting.substr(sign + 1)};
 }

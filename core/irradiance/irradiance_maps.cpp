@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/base/short_number.h"
 #include "core/environment/light_set.h"
 #include "core/environment/sh_projection.h"
 #include "core/environment/sh_rotation.h"
@@ -158,7 +159,7 @@ void validate(const IrradianceSettings& s) {
     const auto in = [](auto value, auto low, auto high) { return value >= low && value <= high; };
     expect(in(s.face_size, 4, 256), "face_size", std::to_string(s.face_size), "4 to 256");
     expect(in(s.specular_maps, 2, 257), "specular_maps", std::to_string(s.specular_maps), "2 to 257");
-    expect(s.sh_error > 0 && s.sh_error <= 1, "sh_error", std::to_string(s.sh_error), "above 0, up to 1");
+    expect(s.sh_error > 0 && s.sh_error <= 1, "sh_error", short_number(s.sh_error), "above 0, up to 1");
     for (const auto& [bands, name] : {std::pair{s.sh_bands_diffuse, "diffuse"}, {s.sh_bands_specular, "specular"}})
         expect(!bands || in(*bands, 1, 128), std::string("sh_bands.") + name, std::to_string(bands.value_or(0)),
                "1 to 128, or auto");

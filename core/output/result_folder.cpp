@@ -84,6 +84,7 @@ void collect_leftovers(const fs::path& path) {
 }  // namespace
 
 void check_result_folder(const fs::path& folder) {
+    if (folder.empty()) throw Error(ErrorKind::usage, "out is empty; allowed is the path of a folder", "out");
     std::error_code error;
     const fs::file_status status = fs::status(folder, error);
     if (status.type() == fs::file_type::not_found) return;
@@ -110,6 +111,7 @@ void check_result_folder(const fs::path& folder) {
 }
 
 void prove_writable(const fs::path& folder) try {
+    check_result_folder(folder);
     const ResultFolder made_and_removed(folder);
 } catch (const Error& error) {
     throw Error(error.kind(), error.what(), "out", error.system_error());

@@ -23,6 +23,7 @@ Json read_object(const std::filesystem::path& file) {
     if (!stream) throw Error(ErrorKind::bad_input, file.string() + ": " + std::generic_category().message(errno));
     std::string text(65536, '\0');
     stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    if (stream.bad()) throw Error(ErrorKind::bad_input, file.string() + ": " + std::generic_category().message(errno));
     text.resize(static_cast<std::size_t>(stream.gcount()));
     Json object = Json::parse(text, nullptr, false);
     if (!object.is_object()) throw Error(ErrorKind::bad_input, file.string() + " is no JSON object of at most 64 KiB");

@@ -22,6 +22,8 @@ std::string read_token(const std::string& file) {
     if (!stream) throw Error(ErrorKind::bad_input, file + ": " + std::generic_category().message(errno), "token-file");
     std::string token(longest_token + 1, '\0');
     stream.read(token.data(), static_cast<std::streamsize>(token.size()));
+    if (stream.bad())
+        throw Error(ErrorKind::bad_input, file + ": " + std::generic_category().message(errno), "token-file");
     token.resize(static_cast<std::size_t>(stream.gcount()));
     token.erase(token.find_last_not_of(" \t\r\n") + 1);
     const auto allowed = [](unsigned char c) { return c > 0x20 && c < 0x7f; };

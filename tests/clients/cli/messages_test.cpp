@@ -58,6 +58,8 @@ TEST(Messages, NameUnknownOptionsAndCommandsAsTypedWithTheOneThatWasMeant) {
     EXPECT_TRUE(contains(told("render --siez 64x64 --out a.png dir"), "no option --siez (did you mean --size?)"));
     EXPECT_TRUE(contains(told(bake + " --wait"), "--wait; it is an option of submit, rebake"));
     EXPECT_TRUE(contains(told(bake + " --no-such-flag"), "--no-such-flag"));
+    EXPECT_TRUE(contains(told("bake -hair a --out b"), "bake has no option -hair (did you mean --hair?)"));
+    EXPECT_TRUE(contains(told(bake + " --set =3"), "--set =3 is not of the form path=value"));
     EXPECT_TRUE(contains(told(bake + " extra"), "bake takes no argument extra"));
     EXPECT_TRUE(contains(told("bak --out a"), "there is no command bak (did you mean bake?)") ||
                 contains(told("bak --out a"), "there is no option --out"));
@@ -79,6 +81,11 @@ TEST(Messages, NameTheFlagThatGaveAFieldAndPathsAsTyped) {
     const std::string text = run_program(line).output;
     EXPECT_TRUE(contains(text, "samples/head.obj/./x cannot be written: Not a directory")) << text;
     EXPECT_FALSE(contains(text, "filesystem error") || contains(text, workshop.path("samples"))) << text;
+    EXPECT_TRUE(
+        contains(told("bake" + workshop.hair() + " --out ''"), "out is empty; allowed is the path of a folder"));
+    EXPECT_TRUE(contains(told(bake + " --request " + workshop.path("samples"), 3), "samples: Is a directory"));
+    EXPECT_TRUE(
+        contains(told(bake + " --set transmittance.voxel_size=1e-9"), "transmittance.voxel_size is 1e-09, which"));
     std::ofstream(workshop.path("broken.json")) << "{";
     EXPECT_FALSE(contains(told(bake + " --request " + workshop.path("broken.json")), "json.exception"));
 }
