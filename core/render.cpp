@@ -21,6 +21,7 @@
 #include "core/irradiance/irradiance_maps.h"
 #include "core/mesh/mesh_file.h"
 #include "core/output/file_sink.h"
+#include "core/output/manifest.h"
 #include "core/output/picture_encoding.h"
 #include "core/output/tone.h"
 #include "core/render/camera_json.h"
@@ -224,12 +225,16 @@ void check_scene(const RenderRequest& request) {
 void check_render(const RenderRequest& request, const std::vector<fs::path>& files) {
     for (const fs::path& file : files) ending_of(file);
     check_scene(request);
-    for (const NamedInput& input : scene_files(request))
+    std::vector<NamedInput> kept = scene_files(request);
+    if (request.result)
+        for (const std::string& name : files_of_result(*request.result))
+            kept.push_back({"result's file " + name, fs::path(*request.result) / name});
+    for (const NamedInput& input : kept)
         for (const fs::path& file : files)
             if (std::error_code error; fs::equivalent(input.file, file, error))
                 throw Error(
                     ErrorKind::usage,
-                    "out is " + file.string() + ", which is the input " + input.name + ": the picture would replace it",
+                    "out is " + file.string() + ", which is the " + input.name + ": the picture would replace it",
                     "out");
     for (const fs::path& file : files) prove_file_writable(file);
 }

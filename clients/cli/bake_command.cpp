@@ -62,12 +62,12 @@ void tell_done(const BakeResult& result, const BakeFlags& options) {
 void run_bake(const BakeFlags& options) {
     const BakeRequest request = make_request(options.request);
     warn_of_threads(options.threads);
-    check_bake(request, options.folder);
-    check_request_file(options.request, options.folder);
     BakeResult result;
     {
         const auto progress = make_progress_display(options.progress, planned_phases(stages_of(request), request));
         const SignalWatch watch(*progress, [&] { discard_staging(options.folder); });
+        check_request_file(options.request, options.folder);
+        check_bake(request, options.folder);
         result = bake(request, options.threads, *progress);
         write_result(result, options.folder, *progress);
     }

@@ -68,7 +68,6 @@ void run_render(const RenderOptions& options) {
     const RenderRequest request = make_request(options);
     const std::optional<double> exposure = parse_exposure(options.exposure);
     warn_of_threads(options.threads);
-    check_render(request, {options.files.begin(), options.files.end()});
     RenderedPicture picture;
     {
         std::vector<Phase> phases{{"read_environment", 1}};
@@ -77,6 +76,7 @@ void run_render(const RenderOptions& options) {
         phases.insert(phases.end(), {{"reference", 1}, {"render", 20}});
         const auto progress = make_progress_display(options.progress, phases);
         const SignalWatch watch(*progress, [] {});
+        check_render(request, {options.files.begin(), options.files.end()});
         picture = render(request, options.threads, *progress);
     }
     for (const std::string& warning : picture.warnings) say_warning(warning);

@@ -41,12 +41,6 @@ constexpr double tracing_factor = 10;  ///< how much longer the transmittance ta
 
 // ---- settings ------------------------------------------------------------------------------------------------------
 
-bool in_block(Text path, Text block) {
-    return path.size() > block.size() && path.starts_with(block) && path[block.size()] == '.';
-}
-
-bool is_or_lies_in(Text path, Text block) { return path == block || in_block(path, block); }
-
 bool reads(const Stage& stage, const RequestField& field) {
     return std::any_of(stage.settings.begin(), stage.settings.end(),
                        [&](Text read) { return is_or_lies_in(field.path, read); });

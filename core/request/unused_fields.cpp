@@ -32,10 +32,6 @@ constexpr std::array conditions{
     Condition{"irradiance.clamp_negative", is_sh, "irradiance.method is exact, which makes no negative texels"},
 };
 
-bool is_or_lies_in(std::string_view path, std::string_view block) {
-    return path == block || (path.starts_with(block) && path[block.size()] == '.');
-}
-
 /// The first input of a stage, without which it does not run.
 std::string missing_input(const Stage& stage) { return std::string(stage.inputs.front()); }
 

@@ -127,7 +127,7 @@ TEST(EarlyErrors, OfAPictureComeBeforeAnyPhase) {
         {" " + workshop.path("samples") + png, "manifest.json"},
         {workshop.hair() + " --env " + workshop.path("out/diffuse_latlong.exr") + " --out " +
              workshop.path("out/diffuse_latlong.exr"),
-         "which is the input environment"},
+         "which is the environment"},
     };
     for (const auto& [arguments, piece] : cases) {
         const std::string render = contains(arguments, "none.hdr")
@@ -137,6 +137,9 @@ TEST(EarlyErrors, OfAPictureComeBeforeAnyPhase) {
         EXPECT_EQ(events.phases, std::set<std::string>{}) << render;
         EXPECT_TRUE(contains(events.last["message"], piece)) << render << events.last["message"];
     }
+    const Events own =
+        events_of("render " + workshop.path("out") + workshop.env() + " --out " + workshop.path("out/preview.png"));
+    EXPECT_TRUE(contains(own.last["message"], "which is the result's file preview.png")) << own.last;
     EXPECT_FALSE(std::filesystem::exists(workshop.path("a.png")));
     const Finished upper = hairbake("render " + workshop.path("out") + " --size 8x8 --samples 1 --out " +
                                     workshop.path("A.PNG") + workshop.env());
