@@ -101,8 +101,11 @@ void check_headers(const BakeRequest& request, std::span<const Stage* const> sta
 void BakeInputs::read_for(std::span<const Stage* const> stages) {
     const bool hair = read(stages, "hair") && request_.hair, sky = read(stages, "environment") && request_.environment;
     check_headers(request_, stages);
-    if (hair) clock_.run("read_hair", [&](Progress& progress) { read_hair_and_meshes(progress); });
-    if (hair && read_setting(stages, "strand")) strands();
+    if (hair)
+        clock_.run("read_hair", [&](Progress& progress) {
+            read_hair_and_meshes(progress);
+            if (read_setting(stages, "strand")) strands();
+        });
     if (sky) clock_.run("read_environment", [&](Progress& progress) { read_sky(progress); });
 }
 
