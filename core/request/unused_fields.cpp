@@ -17,12 +17,17 @@ struct Condition {
     std::string_view reason;
 };
 
-bool is_volume(const BakeRequest& request) { return request.transmittance.method == TransmittanceMethod::volume; }
+/// `auto` may sweep; density.vdb has a grid with every method that writes it.
+bool may_make_a_grid(const BakeRequest& request) {
+    const TransmittanceMethod method = request.transmittance.method;
+    return method == TransmittanceMethod::automatic || method == TransmittanceMethod::volume || request.wants("vdb");
+}
+
 bool is_sh(const BakeRequest& request) { return request.irradiance.method == IrradianceMethod::sh; }
 
 constexpr std::array conditions{
-    Condition{"transmittance.voxels", is_volume, "transmittance.method is not volume"},
-    Condition{"transmittance.voxel_size", is_volume, "transmittance.method is not volume"},
+    Condition{"transmittance.voxels", may_make_a_grid, "transmittance.method needs no voxels"},
+    Condition{"transmittance.voxel_size", may_make_a_grid, "transmittance.method needs no voxels"},
     Condition{
         "transmittance.opacity_maps",
         [](const BakeRequest& request) { return request.transmittance.method == TransmittanceMethod::opacity_maps; },

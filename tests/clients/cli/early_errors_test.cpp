@@ -53,7 +53,7 @@ TEST(EarlyErrors, OfAnInputComeBeforeAnyPhase) {
         {bake + workshop.env() + " --occluder " + workshop.path("none.obj"), "none.obj"},
         {bake + workshop.env() + " --receiver " + workshop.path("samples"), "samples"},
         {"bake --hair " + workshop.path("broken.exr") + workshop.env() + workshop.out(), "no hair model"},
-        {bake + workshop.env() + " --outputs glb,vdb --transmittance-method trace", "vdb"},
+        {bake + workshop.env() + " --outputs glb,vdb --transmittance-method opacity_maps", "vdb"},
     };
     for (const auto& [arguments, piece] : cases) {
         const Events events = events_of(arguments);

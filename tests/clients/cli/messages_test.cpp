@@ -84,8 +84,8 @@ TEST(Messages, NameTheFlagThatGaveAFieldAndPathsAsTyped) {
     EXPECT_TRUE(
         contains(told("bake" + workshop.hair() + " --out ''"), "out is empty; allowed is the path of a folder"));
     EXPECT_TRUE(contains(told(bake + " --request " + workshop.path("samples"), 3), "samples: Is a directory"));
-    EXPECT_TRUE(
-        contains(told(bake + " --set transmittance.voxel_size=1e-9"), "transmittance.voxel_size is 1e-09, which"));
+    EXPECT_TRUE(contains(told(bake + " --transmittance-method volume --set transmittance.voxel_size=1e-9"),
+                         "transmittance.voxel_size is 1e-09, which"));
     std::ofstream(workshop.path("broken.json")) << "{";
     EXPECT_FALSE(contains(told(bake + " --request " + workshop.path("broken.json")), "json.exception"));
 }
@@ -153,7 +153,7 @@ TEST(SilentChoices, AreSentences) {
         {hair + " --layout latlong", "--layout is not used: there is no environment"},
         {hair + " --outputs npy,exr", "no file of the output exr is written"},
         {hair + " --transmittance-method trace --voxels 64",
-         "--voxels is not used: transmittance.method is not volume"},
+         "--voxels is not used: transmittance.method needs no voxels"},
         {hair + " --set transmittance.opacity_maps.layers=2", "transmittance.opacity_maps.layers=2 is not used"},
         {"render" + workshop.hair() + " --channel tangent --size 8x8 --samples 1 --threads 1000 --out " +
              workshop.path("a.png"),

@@ -40,6 +40,11 @@ TEST(UnusedFields, AreThoseOfAMethodThatIsNotAskedFor) {
     request.transmittance.method = TransmittanceMethod::trace;
     EXPECT_NE(why_unused(request, "transmittance.voxels"), "");
     EXPECT_NE(why_unused(request, "transmittance.voxel_size"), "");
+    request.outputs = {"vdb"};
+    EXPECT_EQ(why_unused(request, "transmittance.voxels"), "");
+    request.outputs = {"npy"};
+    request.transmittance.method = TransmittanceMethod::opacity_maps;
+    EXPECT_NE(why_unused(request, "transmittance.voxels"), "");
     request.transmittance.method = TransmittanceMethod::opacity_maps;
     EXPECT_EQ(why_unused(request, "transmittance.opacity_maps.layers"), "");
     BakeRequest maps = of_environment();
