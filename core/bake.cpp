@@ -6,6 +6,7 @@
 #include "core/base/parallel.h"
 #include "core/output/manifest.h"
 #include "core/output/result_files.h"
+#include "core/request/unused_fields.h"
 #include "core/stages/bake_inputs.h"
 #include "core/stages/stage_table.h"
 
@@ -36,10 +37,12 @@ void run(std::span<const Stage* const> stages, const BakeOptions& options, BakeP
     BakeInputs inputs(result.request, clock);
     StageContext context{result.request, inputs, clock};
     StageKeys keys;
+    result.warnings = request_warnings(result.request);
+    inputs.read_for(stages);
+    for (std::string& warning : inputs.take_warnings()) result.warnings.push_back(std::move(warning));
     for (std::size_t i = 0; i < stages.size(); ++i) {
         const StagePart& part = result.parts.emplace_back(run_stage(*stages[i], context));
         keys[std::string(part.stage->name)] = part.key;
-        for (std::string& warning : inputs.take_warnings()) result.warnings.push_back(std::move(warning));
         result.warnings.insert(result.warnings.end(), part.warnings.begin(), part.warnings.end());
         inputs.release_unless_read_by(stages.subspan(i + 1));
     }
@@ -48,7 +51,33 @@ void run(std::span<const Stage* const> stages, const BakeOptions& options, BakeP
     result.hair = inputs.take_hair();
 }
 
+/// Runs `body`. Errors name the folder as the caller wrote it, and not the hidden one beside it.
+template <class Body>
+void naming_folder(const ResultFolder& folder, const Body& body) try {
+    body();
+} catch (const Error& error) {
+    throw Error(error.kind(), folder.as_given(error.what()), error.field(), error.system_error());
+}
+
 }  // namespace
+
+std::vector<NamedInput> inputs_of(const BakeRequest& request) {
+    std::vector<NamedInput> inputs;
+    for (const auto& [name, file] : {std::pair("hair", &request.hair),
+                                     {"environment", &request.environment},
+                                     {"occluder", &request.occluder},
+                                     {"receiver", &request.receiver}})
+        if (*file) inputs.push_back({name, **file});
+    return inputs;
+}
+
+void check_bake(const BakeRequest& request, const std::filesystem::path& folder) {
+    validate(request);
+    check_result_folder(folder);
+    check_outside(folder, inputs_of(request));
+    check_headers(request, stages_of(request));
+    prove_writable(folder);
+}
 
 BakeResult bake(const BakeRequest& request, std::span<const Stage* const> stages, const BakeOptions& options,
                 BakeProgress& progress) {
@@ -76,12 +105,13 @@ void write_result(BakeResult& result, const std::filesystem::path& folder, BakeP
     std::optional<ResultFolder> target;
     std::vector<WrittenFile> files;
     PhaseClock(progress, result.measured.timings_s).run("write", [&](Progress& writing) {
+        check_outside(folder, inputs_of(result.request));
         target.emplace(folder);
-        files = write_files(result, target->path(), writing);
+        naming_folder(*target, [&] { files = write_files(result, target->path(), writing); });
     });
     result.measured.peak_memory_bytes = peak_memory();
     // The manifest is the last file, as it names all others; its own writing is in no timing.
-    write_manifest(result, files, target->path());
+    naming_folder(*target, [&] { write_manifest(result, files, target->path()); });
     progress.check();
     target->commit();
 }

@@ -1,6 +1,7 @@
 #include "core/render.h"
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -8,6 +9,7 @@
 #include <numbers>
 #include <optional>
 
+#include "core/bake.h"
 #include "core/base/error.h"
 #include "core/base/naming_file.h"
 #include "core/base/parallel.h"
@@ -17,7 +19,9 @@
 #include "core/hair/tangents.h"
 #include "core/irradiance/added_lights.h"
 #include "core/irradiance/irradiance_maps.h"
+#include "core/mesh/mesh_file.h"
 #include "core/output/file_sink.h"
+#include "core/output/manifest.h"
 #include "core/output/picture_encoding.h"
 #include "core/output/tone.h"
 #include "core/render/camera_json.h"
@@ -26,6 +30,7 @@
 #include "core/render_input.h"
 
 namespace hairbake {
+namespace fs = std::filesystem;
 namespace {
 
 Vec3d vector_of(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
@@ -37,14 +42,19 @@ std::optional<LightSum> make_lights(const RenderInput& input, const FiberModel& 
     return LightSum(with_directional_lights(std::move(lights), input.bake.irradiance.lights), model);
 }
 
+/// Whether the mode directional takes the harmonics; else it takes the bent cones. `has_sh`, `has_cones`: of the bake.
+/// Throws Error(usage) where the bake has not what the request asks for.
+bool takes_sh(const RenderRequest& request, bool has_sh, bool has_cones) {
+    if (has_sh && request.directional != Directional::bent_cone) return true;
+    if (has_cones && request.directional != Directional::sh) return false;
+    throw Error(ErrorKind::usage,
+                "the bake has no such directional transmittance; bake with transmittance.sh_bands (1 to 4) or "
+                "transmittance.bent_cone",
+                "mode");
+}
+
 DirectionalTransmittance directional_of(const RenderRequest& request, const RenderInput& input) {
-    const bool sh = request.directional != Directional::bent_cone && !input.sh.empty();
-    const bool cone = !sh && request.directional != Directional::sh && !input.bent_cone.empty();
-    if (!sh && !cone)
-        throw Error(ErrorKind::usage,
-                    "the bake has no such directional transmittance; bake with transmittance.sh_bands (1 to 4) or "
-                    "transmittance.bent_cone",
-                    "mode");
+    const bool sh = takes_sh(request, !input.sh.empty(), !input.bent_cone.empty());
     DirectionalTransmittance transmittance;
     transmittance.average = input.average;
     if (sh) {
@@ -180,10 +190,57 @@ std::vector<std::uint8_t> screen_bytes(const RenderedPicture& picture, double st
     return bytes;
 }
 
+/// ".exr" or ".png".
+std::string ending_of(const fs::path& file) {
+    std::string ending = file.extension().string();
+    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (ending == ".exr" || ending == ".png") return ending;
+    throw Error(ErrorKind::usage, "out is " + file.string() + "; allowed is a name that ends in .exr or .png", "out");
+}
+
+/// The files that a person names for a picture, with the names of their fields.
+std::vector<NamedInput> scene_files(const RenderRequest& request) {
+    std::vector<NamedInput> files = inputs_of(request.bake);
+    if (request.mesh) files.push_back({"mesh", *request.mesh});
+    if (request.camera_file) files.push_back({"camera", *request.camera_file});
+    return files;
+}
+
+/// What can be known before anything is read to its end.
+void check_scene(const RenderRequest& request) {
+    validate(request);
+    const Vec3f low, high(1);  // of any hair: only the camera's own numbers are checked
+    if (request.camera_file)
+        read_camera(*request.camera_file, low, high, 1);
+    else
+        orbit_camera(request.orbit, low, high, 1);
+    if (request.mesh) check_mesh(*request.mesh);
+    check_render_input(request);
+    if (request.mode == ShadingMode::directional && !request.result)
+        takes_sh(request, request.bake.transmittance.sh_bands > 0, request.bake.transmittance.bent_cone);
+}
+
 }  // namespace
 
+void check_render(const RenderRequest& request, const std::vector<fs::path>& files) {
+    for (const fs::path& file : files) ending_of(file);
+    check_scene(request);
+    std::vector<NamedInput> kept = scene_files(request);
+    if (request.result)
+        for (const std::string& name : files_of_result(*request.result))
+            kept.push_back({"result's file " + name, fs::path(*request.result) / name});
+    for (const NamedInput& input : kept)
+        for (const fs::path& file : files)
+            if (std::error_code error; fs::equivalent(input.file, file, error))
+                throw Error(
+                    ErrorKind::usage,
+                    "out is " + file.string() + ", which is the " + input.name + ": the picture would replace it",
+                    "out");
+    for (const fs::path& file : files) prove_file_writable(file);
+}
+
 RenderedPicture render(const RenderRequest& request, int threads, BakeProgress& progress) {
-    validate(request);
+    check_scene(request);
     RenderedPicture picture;
     try {
         with_threads(threads, [&] {
@@ -205,16 +262,9 @@ double automatic_exposure(const RenderedPicture& picture) {
 }
 
 void write_picture(const RenderedPicture& picture, double stops, const std::filesystem::path& file) {
-    const std::string ending = file.extension().string();
-    std::vector<std::byte> bytes;
-    if (ending == ".exr")
-        bytes = encode_exr(picture.pixels, picture.width, picture.height, picture.metadata);
-    else if (ending == ".png")
-        bytes = encode_png(screen_bytes(picture, stops), picture.width, picture.height, {});
-    else
-        throw Error(ErrorKind::usage, "out is " + file.string() + "; allowed is a name that ends in .exr or .png",
-                    "out");
-    write_whole_file(file, bytes);
+    write_whole_file(file, ending_of(file) == ".exr"
+                               ? encode_exr(picture.pixels, picture.width, picture.height, picture.metadata)
+                               : encode_png(screen_bytes(picture, stops), picture.width, picture.height, {}));
 }
 
 }  // namespace hairbake

@@ -21,6 +21,11 @@ struct RenderedPicture {
     std::vector<std::string> warnings;
 };
 
+/// Finds out what can be known before a picture is rendered: the request is valid, the headers of all inputs are right,
+/// and the picture can be written to `files` (write_picture), which are none of the inputs. Reads no file to its end.
+/// Throws the errors of render() and write_picture().
+void check_render(const RenderRequest& request, const std::vector<std::filesystem::path>& files);
+
 /// Validates, reads, bakes where needed and renders on `threads` threads (0: one per core). Reports the phases of
 /// bake() and "render".
 /// Throws Error(usage) naming the field.
@@ -32,7 +37,7 @@ RenderedPicture render(const RenderRequest& request, int threads, BakeProgress& 
 /// 0 for channels that show no light.
 double automatic_exposure(const RenderedPicture& picture);
 
-/// Writes the picture by the name's ending: .exr linear float32, .png through the film curve at `stops`
+/// Writes the picture by the name's ending, in lower or upper case: .exr linear float32, .png through the film curve at `stops`
 /// (transmittance: 0 to 1 as 0 to 255; tangent: -1 to 1). The file appears whole.
 /// Throws Error(usage) for another ending, and the errors of FileSink.
 void write_picture(const RenderedPicture& picture, double stops, const std::filesystem::path& file);

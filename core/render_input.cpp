@@ -10,7 +10,9 @@
 #include "core/environment/environment_reader.h"
 #include "core/hair/hair_file.h"
 #include "core/mesh/mesh_file.h"
+#include "core/output/manifest.h"
 #include "core/result_reader.h"
+#include "core/stages/bake_inputs.h"
 
 namespace hairbake {
 namespace fs = std::filesystem;
@@ -62,6 +64,11 @@ std::string occluder_of(const RenderRequest& request, const StoredResult& stored
     return checked(*file, stored.digests.at("occluder"), "occluder");
 }
 
+void read_sky(RenderInput& input, BakeProgress& progress) {
+    progress.enter("read_environment");
+    input.environment = read_environment(*input.bake.environment, input.bake.environment_settings, progress);
+}
+
 /// Takes the arrays that the pictures need, as far as they are there.
 void take_arrays(std::vector<VertexArray>& arrays, RenderInput& input) {
     const std::pair<const ArrayKind*, std::vector<float>*> wanted[] = {{&average_transmittance_kind(), &input.average},
@@ -96,15 +103,24 @@ RenderInput from_folder(const RenderRequest& request) {
     return input;
 }
 
-RenderInput from_bake(const RenderRequest& request, BakeProgress& progress) {
-    RenderInput input;
-    input.bake = request.bake;
+/// The bake in memory that the mode needs. The irradiance maps are baked for the mode baked alone.
+/// Throws Error(usage) where an input is not named.
+BakeRequest bake_for(const RenderRequest& request) {
     if (!request.bake.hair) throw Error(ErrorKind::usage, "give a result folder, or --hair and --env", "hair");
     if (!request.bake.environment && (shows_light(request) || needs_environment(request)))
         throw Error(ErrorKind::usage, "give a result folder, or --hair and --env", "environment");
     BakeRequest wanted = request.bake;
     wanted.transmittance.reference_vertices = 0;
     if (request.mode != ShadingMode::baked || !shows_light(request)) wanted.environment.reset();
+    return wanted;
+}
+
+RenderInput from_bake(const RenderRequest& request, BakeProgress& progress) {
+    RenderInput input;
+    input.bake = request.bake;
+    const BakeRequest wanted = bake_for(request);
+    // Before the bake, which may take long: the environment may be broken.
+    if (needs_environment(request) && !wanted.environment) read_sky(input, progress);
     BakeResult result =
         bake(wanted, stages_of(wanted), {thread_count(), wanted.environment && needs_environment(request)}, progress);
     input.hair = std::move(*result.hair);
@@ -120,13 +136,26 @@ RenderInput from_bake(const RenderRequest& request, BakeProgress& progress) {
 
 }  // namespace
 
-RenderInput read_render_input(const RenderRequest& request, BakeProgress& progress) {
-    RenderInput input = request.result ? from_folder(request) : from_bake(request, progress);
-    if (needs_environment(request) && !input.environment) {
-        progress.enter("read_environment");
-        input.environment = read_environment(*input.bake.environment, input.bake.environment_settings, progress);
+void check_render_input(const RenderRequest& request) {
+    const BakeRequest& named = request.bake;
+    if (request.result) files_of_result(*request.result);
+    if (!request.result) {
+        const BakeRequest wanted = bake_for(request);
+        validate(wanted);
+        check_headers(wanted, stages_of(wanted));
     }
-    if (request.mesh) input.mesh = read_mesh(*request.mesh);
+    if (request.result && named.hair) check_groom(*named.hair);
+    if (request.result && named.occluder) check_mesh(*named.occluder);
+    if (named.environment && needs_environment(request))
+        check_environment(*named.environment, named.environment_settings);
+}
+
+RenderInput read_render_input(const RenderRequest& request, BakeProgress& progress) {
+    std::optional<TriangleMesh> mesh;
+    if (request.mesh) mesh = read_mesh(*request.mesh);
+    RenderInput input = request.result ? from_folder(request) : from_bake(request, progress);
+    if (needs_environment(request) && !input.environment) read_sky(input, progress);
+    input.mesh = std::move(mesh);
     progress.check();
     return input;
 }

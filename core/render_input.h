@@ -25,6 +25,10 @@ struct RenderInput {
     std::vector<std::string> warnings;
 };
 
+/// Checks what read_render_input() reads, as far as the headers of the files tell.
+/// Throws the same errors with the same words.
+void check_render_input(const RenderRequest& request);
+
 /// Reads the result folder, or bakes in memory the stages that the mode needs. The environment is decoded once.
 /// Throws the errors of render().
 RenderInput read_render_input(const RenderRequest& request, BakeProgress& progress);

@@ -7,6 +7,7 @@
 
 #include "core/base/digest.h"
 #include "core/base/error.h"
+#include "core/base/json_reason.h"
 #include "core/output/manifest.h"
 #include "core/output/npy.h"
 #include "core/request/request_json.h"
@@ -130,7 +131,7 @@ StoredResult read_result(const fs::path& folder) {
         read_arrays(files, result);
         read_maps(files, result);
     } catch (const Json::exception& error) {
-        refuse(file, std::string("is not a manifest of hairbake: ") + error.what());
+        refuse(file, std::string("is not a manifest of hairbake: ") + json_reason(error));
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::usage) throw;
         refuse(file, std::string("holds a request that is not valid: ") + error.what());

@@ -1,13 +1,17 @@
 // hairbake bake
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "clients/cli/commands.h"
+#include "clients/cli/common_flags.h"
 #include "clients/cli/exit_code.h"
 #include "clients/cli/messages.h"
+#include "clients/cli/output.h"
 #include "clients/cli/progress_display.h"
 #include "clients/cli/request_flags.h"
 #include "clients/cli/signal_watch.h"
 #include "core/bake.h"
+#include "core/request/unused_fields.h"
 
 namespace hairbake {
 namespace {
@@ -47,21 +51,23 @@ std::string summary(const BakeResult& result, const std::string& folder) {
 }
 
 void tell_done(const BakeResult& result, const BakeFlags& options) {
-    for (const std::string& warning : result.warnings) say_warning(warning);
-    if (options.progress == "json")
-        std::printf("{\"event\":\"done\",\"folder\":%s,\"id\":%s}\n", json_string(options.folder).c_str(),
-                    json_string(result.id).c_str());
-    else
-        std::printf("%s\n", summary(result, options.folder).c_str());
+    const std::vector<std::string> said = request_warnings(result.request);  // by make_request()
+    for (const std::string& warning : result.warnings)
+        if (std::find(said.begin(), said.end(), warning) == said.end()) say_warning(warning);
+    print_line(options.progress == "json" ? R"({"event":"done","folder":)" + json_string(options.folder) + R"(,"id":)" +
+                                                json_string(result.id) + "}"
+                                          : summary(result, options.folder));
 }
 
 void run_bake(const BakeFlags& options) {
     const BakeRequest request = make_request(options.request);
-    check_result_folder(options.folder);
+    warn_of_threads(options.threads);
     BakeResult result;
     {
         const auto progress = make_progress_display(options.progress, planned_phases(stages_of(request), request));
         const SignalWatch watch(*progress, [&] { discard_staging(options.folder); });
+        check_request_file(options.request, options.folder);
+        check_bake(request, options.folder);
         result = bake(request, options.threads, *progress);
         write_result(result, options.folder, *progress);
     }
@@ -77,17 +83,16 @@ void run(const BakeFlags& options) {
 void add_bake_command(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("bake", "Bake transmittance and irradiance maps into a result folder");
     const auto options = std::make_shared<BakeFlags>();
-    command->add_option("--hair", options->request.hair, "hair model; alone: transmittance only");
+    command->add_option("--hair", options->request.hair, "hair model; alone: transmittance only")->type_name("FILE");
     add_request_flags(
         *command, options->request,
         "HDR environment: a picture, or a cube's six faces as a folder or sky_{face}.hdr; alone: irradiance "
         "maps only");
-    command->add_option("--out", options->folder, "result folder: new, empty or an earlier result")->required();
-    command->add_option("--threads", options->threads, "threads; 0: one per core")->check(CLI::Range(0, 1024));
-    command
-        ->add_option("--progress", options->progress,
-                     "auto (a bar on a terminal), json (lines on standard output) or none")
-        ->check(CLI::IsMember({"auto", "json", "none"}));
+    command->add_option("--out", options->folder, "result folder: new, empty or an earlier result")
+        ->required()
+        ->type_name("DIR");
+    add_threads_flag(*command, options->threads);
+    add_progress_flag(*command, options->progress);
     command->footer(request_flags_help() + "\n" + command->get_footer());
     command->callback([options, &action] { action = [options] { run(*options); }; });
 }

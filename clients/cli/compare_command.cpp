@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include "clients/cli/commands.h"
+#include "clients/cli/output.h"
 #include "clients/cli/signal_watch.h"
 #include "core/tools/compare.h"
 
@@ -22,7 +23,7 @@ void add_compare_command(CLI::App& app, Action& action) {
             Progress progress;
             const SignalWatch watch(progress, [] {});
             const std::string report = compare(options->first, options->second);
-            std::fputs(options->json ? (report + "\n").c_str() : as_table(report).c_str(), stdout);
+            print_text(options->json ? report + "\n" : as_table(report));
         };
     });
 }

@@ -2,6 +2,8 @@
 #include <CLI/CLI.hpp>
 
 #include "clients/cli/commands.h"
+#include "clients/cli/option_values.h"
+#include "clients/cli/output.h"
 #include "clients/cli/signal_watch.h"
 #include "core/tools/diff.h"
 
@@ -19,8 +21,11 @@ void add_diff_command(CLI::App& app, Action& action) {
     command->add_option("first", options->first, "picture")->required()->type_name("A.exr");
     command->add_option("second", options->second, "picture")->required()->type_name("B.exr");
     command->add_option("--out", options->picture, "write the difference in false colours")->type_name("DIFF.png");
-    command->add_option("--scale", options->scale,
-                        "difference drawn in the brightest colour; default: the largest, rounded up");
+    command
+        ->add_option("--scale", options->scale,
+                     "difference drawn in the brightest colour; default: the largest, rounded up")
+        ->transform(any_number())
+        ->type_name("X");
     command->add_flag("--json", options->json, "figures as JSON");
     command->callback([options, &action] {
         action = [options] {
@@ -30,7 +35,7 @@ void add_diff_command(CLI::App& app, Action& action) {
             });
             const std::string report =
                 diff(options->first, options->second, options->picture, options->scale, progress);
-            std::fputs(options->json ? (report + "\n").c_str() : diff_as_lines(report).c_str(), stdout);
+            print_text(options->json ? report + "\n" : diff_as_lines(report));
         };
     });
 }

@@ -1,9 +1,10 @@
 #include "clients/cli/exit_code.h"
 
-#include <cstdio>
+#include <filesystem>
 #include <new>
 #include <system_error>
 
+#include "clients/cli/output.h"
 #include "clients/cli/progress_display.h"
 
 namespace hairbake {
@@ -21,6 +22,21 @@ ExitCode exit_code(ErrorKind kind) {
             return ExitCode::cancelled;
         default:
             return ExitCode::internal;
+    }
+}
+
+ExitCode exit_code(const std::error_code& error) {
+    const bool full = error == std::errc::no_space_on_device || error == std::errc::not_enough_memory ||
+                      error == std::errc::resource_unavailable_try_again;
+    return full ? ExitCode::out_of_resources : ExitCode::bad_input;
+}
+
+/// A failure of the output itself changes nothing: the failure that it should tell of goes to standard error too.
+void tell_failure(const Failure& failure) {
+    try {
+        print_line(R"({"event":"error","kind":)" + json_string(name_of(failure.code)) + R"(,"field":)" +
+                   json_string(failure.field) + R"(,"message":)" + json_string(failure.message) + "}");
+    } catch (const Error&) {
     }
 }
 
@@ -58,7 +74,7 @@ std::string exit_code_help() {
            "  2  usage: unknown option or field, value out of range, output folder in use\n"
            "  3  bad input: a file is missing, broken or cannot be read or written\n"
            "  4  out of resources: memory or disk\n"
-           "  5  cancelled: SIGINT (Ctrl-C) or SIGTERM; nothing half-written remains\n";
+           "  5  cancelled: SIGINT (Ctrl-C), SIGTERM or SIGHUP; nothing half-written remains\n";
 }
 
 std::string remote_exit_code_help() {
@@ -79,11 +95,10 @@ Failure current_failure() {
         return {exit_code(error.kind()), error.what(), error.field()};
     } catch (const std::bad_alloc&) {
         return {ExitCode::out_of_resources, "memory ran out", ""};
+    } catch (const std::filesystem::filesystem_error& error) {
+        return {exit_code(error.code()), error.path1().string() + ": " + error.code().message(), ""};
     } catch (const std::system_error& error) {
-        const bool full = error.code() == std::errc::no_space_on_device ||
-                          error.code() == std::errc::not_enough_memory ||
-                          error.code() == std::errc::resource_unavailable_try_again;
-        return {full ? ExitCode::out_of_resources : ExitCode::bad_input, error.what(), ""};
+        return {exit_code(error.code()), error.what(), ""};
     } catch (const std::exception& error) {
         return {ExitCode::internal, error.what(), ""};
     }
@@ -93,11 +108,7 @@ void with_json_failures(const std::string& progress_mode, const std::function<vo
     try {
         work();
     } catch (...) {
-        const Failure failure = current_failure();
-        if (progress_mode == "json")
-            std::printf("{\"event\":\"error\",\"kind\":%s,\"field\":%s,\"message\":%s}\n",
-                        json_string(name_of(failure.code)).c_str(), json_string(failure.field).c_str(),
-                        json_string(failure.message).c_str());
+        if (progress_mode == "json") tell_failure(current_failure());
         throw;
     }
 }

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include "clients/cli/commands.h"
+#include "clients/cli/output.h"
 #include "clients/cli/signal_watch.h"
 #include "core/tools/inspect.h"
 
@@ -21,7 +22,7 @@ void add_info_command(CLI::App& app, Action& action) {
             Progress progress;
             const SignalWatch watch(progress, [] {});
             const std::string facts = inspect(options->path, progress);
-            std::fputs(options->json ? (facts + "\n").c_str() : as_lines(facts).c_str(), stdout);
+            print_text(options->json ? facts + "\n" : as_lines(facts));
         };
     });
 }

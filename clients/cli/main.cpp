@@ -1,9 +1,12 @@
 // hairbake: the command line.
 #include <CLI/CLI.hpp>
+#include <sstream>
 
 #include "clients/cli/commands.h"
 #include "clients/cli/exit_code.h"
 #include "clients/cli/messages.h"
+#include "clients/cli/output.h"
+#include "clients/cli/parse_failure.h"
 #include "clients/cli/signal_watch.h"
 #include "core/bake.h"
 
@@ -16,9 +19,26 @@ int report_failure() {
     return static_cast<int>(failure.code);
 }
 
+/// --help and --version end the parsing with an exception, too.
+int end_parsing(const CLI::ParseError& error, const CLI::App& app, std::span<char* const> arguments) {
+    if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success)) {
+        hairbake::say_error(hairbake::words_for(error, app, arguments));
+        return static_cast<int>(hairbake::ExitCode::usage);
+    }
+    std::ostringstream text, errors;
+    app.exit(error, text, errors);
+    try {
+        hairbake::print_text(text.str());
+        return static_cast<int>(hairbake::ExitCode::ok);
+    } catch (...) {
+        return report_failure();
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+    hairbake::occupy_closed_streams();
     hairbake::block_signals();
     CLI::App app("Bakes irradiance cube maps and per-vertex transmittance for hair.", "hairbake");
     hairbake::Action action;
@@ -41,14 +61,17 @@ int main(int argc, char** argv) {
     hairbake::add_upload_command(app, action);
     hairbake::add_delete_command(app, action);
     app.footer(hairbake::remote_exit_code_help());
+    const auto arguments = std::span<char* const>(argv, static_cast<std::size_t>(argc)).subspan(argc > 0 ? 1 : 0);
+    if (const std::string mistake = hairbake::words_for_one_dash(app, arguments); !mistake.empty()) {
+        hairbake::say_error(mistake);
+        return static_cast<int>(hairbake::ExitCode::usage);
+    }
     try {
         app.parse(argc, argv);
         action();
         return static_cast<int>(hairbake::ExitCode::ok);
     } catch (const CLI::ParseError& error) {
-        const bool asked = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);  // --help, --version
-        app.exit(error);
-        return static_cast<int>(asked ? hairbake::ExitCode::ok : hairbake::ExitCode::usage);
+        return end_parsing(error, app, arguments);
     } catch (...) {
         return report_failure();
     }

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include "clients/cli/commands.h"
+#include "clients/cli/output.h"
 #include "core/request/request_json.h"
 #include "core/request/request_presets.h"
 
@@ -9,15 +10,24 @@ namespace hairbake {
 namespace {
 
 void list_presets() {
-    for (const Preset& preset : presets())
-        std::printf("%-8.*s%s\n", static_cast<int>(preset.name.size()), preset.name.data(),
-                    preset_description(preset).c_str());
+    const auto row = [](std::string name, const std::string& description) {
+        name.resize(9, ' ');
+        return name + description + "\n";
+    };
+    const BakeRequest standard;
+    const std::string size = std::to_string(standard.irradiance.face_size);
+    std::string list =
+        row(std::string(default_preset), "Without --preset: " + std::to_string(standard.transmittance.directions) +
+                                             " directions, " + std::to_string(standard.irradiance.specular_maps) +
+                                             " specular maps of " + size + "x" + size + "x6.");
+    for (const Preset& preset : presets()) list += row(std::string(preset.name), preset_description(preset));
+    print_text(list);
 }
 
 void show_preset(const std::string& name) {
     BakeRequest request;
     apply_preset(request, name);
-    std::printf("%s\n", to_json(request).c_str());
+    print_line(to_json(request));
 }
 
 }  // namespace
@@ -29,12 +39,14 @@ void add_presets_command(CLI::App& app, Action& action) {
     };
     CLI::App* command = app.add_subcommand("presets", "List the presets, or show the request that one makes");
     const auto options = std::make_shared<Options>();
-    command->add_option("name", options->name, "show this preset's request in full")->type_name("NAME");
+    command
+        ->add_option("name", options->name, "show this preset's request in full; default: all fields at their defaults")
+        ->type_name("NAME");
     command->add_flag("--schema", options->schema, "print the request's JSON schema");
     command->callback([options, &action] {
         action = [options] {
             if (options->schema)
-                std::fwrite(request_schema().data(), 1, request_schema().size(), stdout);
+                print_text(request_schema());
             else if (options->name)
                 show_preset(*options->name);
             else

@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <mutex>
 
+#include "clients/cli/output.h"
+
 namespace hairbake {
 namespace {
 
@@ -88,13 +90,11 @@ public:
 
 protected:
     void show(const Reading& reading) override {
-        char left[32] = "null";
+        char left[32] = "null", line[256];
         if (reading.left >= 0) std::snprintf(left, sizeof left, "%.2f", reading.left);
-        std::printf(
-            "{\"event\":\"progress\",\"phase\":%s,\"phase_fraction\":%.4f,\"fraction\":%.4f,\"elapsed_s\":%.2f,"
-            "\"left_s\":%s}\n",
-            json_string(reading.phase).c_str(), reading.phase_fraction, reading.fraction, reading.elapsed, left);
-        std::fflush(stdout);
+        std::snprintf(line, sizeof line, "\"phase_fraction\":%.4f,\"fraction\":%.4f,\"elapsed_s\":%.2f,\"left_s\":%s}",
+                      reading.phase_fraction, reading.fraction, reading.elapsed, left);
+        print_line("{\"event\":\"progress\",\"phase\":" + json_string(reading.phase) + "," + line);
     }
 };
 

@@ -25,8 +25,19 @@ struct RequestFlags {
 /// help of --env.
 void add_request_flags(CLI::App& command, RequestFlags& flags, const std::string& environment_help);
 
-/// "Later wins: ..." for the help of a command with these flags.
+/// Writing a result replaces its whole folder.
+/// Throws Error(usage) when the request file lies in `folder`.
+void check_request_file(const RequestFlags& flags, const std::string& folder);
+
+/// "Later wins: ..." and all fields for --set, for the help of a command with these flags.
 std::string request_flags_help();
+
+/// The list of all fields for --set, with unit, allowed values and default.
+std::string fields_help();
+
+/// Sets fields by "path=value". Warns on standard error of deprecated paths.
+/// Throws Error(usage) naming the field.
+void set_fields(BakeRequest& request, const std::vector<std::string>& settings);
 
 /// Takes the defaults, then the preset, the request file, the flags and --set; later ones win. Warns on standard error
 /// of flags without effect.

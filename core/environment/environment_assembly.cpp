@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 
 #include "core/base/assert.h"
 #include "core/base/parallel.h"
@@ -42,11 +43,15 @@ void linearize(std::vector<Vec3f>& pixels, const Progress& progress) {
     });
 }
 
+NamedPrimaries primaries_of(const ImageFile& image) {
+    if (!image.chromaticities) return {};
+    return {name_of(*image.chromaticities), image.chromaticities};
+}
+
 // Takes over the facts of a file beside its pixels. A warning of several files appears once.
 void take_facts(ImageFile& image, EnvironmentMap& map, const Progress& progress) {
     map.source_format = image.format;
-    map.primaries = {};
-    if (image.chromaticities) map.primaries = {name_of(*image.chromaticities), image.chromaticities};
+    map.primaries = primaries_of(image);
     if (image.integer) {
         map.low_dynamic_range = true;
         image.warnings.push_back(
@@ -104,12 +109,43 @@ bool has_picture_outside_faces(const CubeLayout& layout, int size, const std::ve
     return false;
 }
 
-EnvironmentMap read_one_picture(const std::filesystem::path& file, EnvironmentLayout requested, Progress& progress) {
+/// Gets the pixels or the facts of a file: file index, check of its declared size.
+using ReadFile = std::function<ImageFile(std::size_t index, const SizeCheck& check)>;
+
+ImageFile read_one_picture(const std::filesystem::path& file, EnvironmentLayout requested, const ReadFile& read) {
     if (requested == EnvironmentLayout::faces)
         fail(file, "this is one picture; layout faces takes a folder with six, or a pattern with {face}");
-    const auto check = [&](int width, int height) { return fault_of_size(requested, width, height); };
+    return read(0, [&](int width, int height) { return fault_of_size(requested, width, height); });
+}
+
+/// Reads the six faces and gives each to `take`. They must be square and agree in size and primaries.
+void read_six_faces(const EnvironmentFiles& files, EnvironmentLayout requested, const ReadFile& read,
+                    const std::function<void(ImageFile&)>& take) {
+    if (requested != EnvironmentLayout::automatic && requested != EnvironmentLayout::faces)
+        fail(files.files[0].parent_path(),
+             "these are six pictures; layout " + std::string(name_of(requested)) + " takes one");
+    const std::string first = files.files[0].string();
+    int size = 0;
+    std::string primaries;
+    for (std::size_t face = 0; face < files.files.size(); ++face) {
+        ImageFile image = read(face, [&](int width, int height) {
+            if (face == 0 || width != height || width == size) return fault_of_face(width, height);
+            return "the size is " + size_text(width, height) + " pixels; that of " + first + " is " +
+                   size_text(size, size);
+        });
+        const std::string found = primaries_of(image).name;
+        if (face > 0 && found != primaries)
+            fail(files.files[face], "the primaries are " + found + "; those of " + first + " are " + primaries);
+        size = image.width;
+        primaries = found;
+        take(image);
+    }
+}
+
+EnvironmentMap assemble_picture(const std::filesystem::path& file, EnvironmentLayout requested, Progress& progress) {
     ProgressPart reading = progress.part(0, 0.9);
-    ImageFile image = read_image_file(file, check, reading);
+    ImageFile image = read_one_picture(
+        file, requested, [&](std::size_t, const SizeCheck& check) { return read_image_file(file, check, reading); });
     EnvironmentMap map;
     take_facts(image, map, progress);
     map.layout = layout_of_shape(image.width, image.height).value();  // `check` let no other shape pass
@@ -132,31 +168,20 @@ EnvironmentMap read_one_picture(const std::filesystem::path& file, EnvironmentLa
     return map;
 }
 
-EnvironmentMap read_faces(const EnvironmentFiles& files, EnvironmentLayout requested, Progress& progress) {
-    if (requested != EnvironmentLayout::automatic && requested != EnvironmentLayout::faces)
-        fail(files.files[0].parent_path(),
-             "these are six pictures; layout " + std::string(name_of(requested)) + " takes one");
+EnvironmentMap assemble_faces(const EnvironmentFiles& files, EnvironmentLayout requested, Progress& progress) {
     EnvironmentMap map;
     map.layout = EnvironmentLayout::faces;
     int size = 0;
-    for (int face = 0; face < cube_faces; ++face) {
-        const std::filesystem::path& file = files.files[face];
-        const auto check = [&](int width, int height) {
-            if (face == 0 || width != height || width == size) return fault_of_face(width, height);
-            return "the size is " + size_text(width, height) + " pixels; that of " + files.files[0].string() + " is " +
-                   size_text(size, size);
-        };
-        ProgressPart reading = progress.part(0.15 * face, 0.15 * (face + 1));
-        ImageFile image = read_image_file(file, check, reading);
-        const std::string before = map.primaries.name;
+    const auto read = [&](std::size_t face, const SizeCheck& check) {
+        ProgressPart reading = progress.part(0.15 * double(face), 0.15 * double(face + 1));
+        return read_image_file(files.files[face], check, reading);
+    };
+    read_six_faces(files, requested, read, [&](ImageFile& image) {
         take_facts(image, map, progress);
-        if (face > 0 && map.primaries.name != before)
-            fail(file, "the primaries are " + map.primaries.name + "; those of " + files.files[0].string() + " are " +
-                           before);
         size = image.width;
         map.pixels.reserve(std::size_t(cube_faces) * size * size);
         map.pixels.insert(map.pixels.end(), image.pixels.begin(), image.pixels.end());
-    }
+    });
     become_cube(map, size);
     return map;
 }
@@ -182,8 +207,18 @@ std::string fault_of_size(EnvironmentLayout requested, int width, int height) {
 }
 
 EnvironmentMap assemble_environment(const EnvironmentFiles& files, EnvironmentLayout requested, Progress& progress) {
-    return files.faces() ? read_faces(files, requested, progress)
-                         : read_one_picture(files.files[0], requested, progress);
+    return files.faces() ? assemble_faces(files, requested, progress)
+                         : assemble_picture(files.files[0], requested, progress);
+}
+
+void check_pictures(const EnvironmentFiles& files, EnvironmentLayout requested) {
+    const auto read = [&](std::size_t index, const SizeCheck& check) {
+        return read_image_facts(files.files[index], check);
+    };
+    if (files.faces())
+        read_six_faces(files, requested, read, [](ImageFile&) {});
+    else
+        read_one_picture(files.files[0], requested, read);
 }
 
 }  // namespace hairbake

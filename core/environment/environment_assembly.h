@@ -27,4 +27,9 @@ std::string fault_of_size(EnvironmentLayout requested, int width, int height);
 /// Error(cancelled).
 EnvironmentMap assemble_environment(const EnvironmentFiles& files, EnvironmentLayout requested, Progress& progress);
 
+/// Makes those checks of assemble_environment() that need only the files' headers: that they are there and can be read,
+/// their layout, sizes and primaries.
+/// Throws the same errors with the same words.
+void check_pictures(const EnvironmentFiles& files, EnvironmentLayout requested);
+
 }  // namespace hairbake

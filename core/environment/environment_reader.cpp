@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "core/base/parallel.h"
+#include "core/base/short_number.h"
 #include "core/environment/environment_assembly.h"
 #include "core/environment/environment_files.h"
 #include "core/environment/radiance_repair.h"
@@ -17,11 +18,11 @@ void check_settings(const EnvironmentSettings& settings) {
                     "environment_settings." + field);
     };
     for (const double angle : settings.rotation_deg)
-        if (!std::isfinite(angle)) refuse("rotation_deg", std::to_string(angle), "finite");
+        if (!std::isfinite(angle)) refuse("rotation_deg", short_number(angle), "finite");
     if (!(std::abs(settings.exposure_stops) <= 64))
-        refuse("exposure_stops", std::to_string(settings.exposure_stops), "-64 to 64");
+        refuse("exposure_stops", short_number(settings.exposure_stops), "-64 to 64");
     for (const double factor : settings.tint)
-        if (!(factor >= 0) || !std::isfinite(factor)) refuse("tint", std::to_string(factor), "finite and not negative");
+        if (!(factor >= 0) || !std::isfinite(factor)) refuse("tint", short_number(factor), "finite and not negative");
 }
 
 // Names the first pixel that left the range of single precision.
@@ -120,6 +121,11 @@ EnvironmentMap read_environment(const std::filesystem::path& path, const Environ
     expose(map, settings, path.string(), progress);
     progress.report(1);
     return map;
+}
+
+void check_environment(const std::filesystem::path& path, const EnvironmentSettings& settings) {
+    check_settings(settings);
+    check_pictures(find_environment_files(path), settings.layout);
 }
 
 }  // namespace hairbake

@@ -23,4 +23,8 @@ namespace hairbake {
 EnvironmentMap read_environment(const std::filesystem::path& path, const EnvironmentSettings& settings,
                                 Progress& progress);
 
+/// Makes those checks of read_environment() that need only the headers of the files.
+/// Throws the same errors with the same words.
+void check_environment(const std::filesystem::path& path, const EnvironmentSettings& settings);
+
 }  // namespace hairbake

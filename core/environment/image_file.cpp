@@ -291,19 +291,29 @@ void read_pixels(const Source& source, const OIIO::ImageSpec& spec, std::array<i
     image.pixels.resize(width * height);
 }
 
-}  // namespace
-
-ImageFile read_image_file(const std::filesystem::path& file, const SizeCheck& check, Progress& progress) try {
+/// An image whose header was read and checked.
+struct OpenedImage {
     Source source;
-    source.file = file;
-    if (!std::filesystem::is_regular_file(file))
-        source.fail("there is no such file", std::filesystem::exists(file) ? 0 : ENOENT);
-    recognise(source);
     OIIO::ImageSpec spec;
+    std::array<int, 3> channels{};
+    ImageFile image;  ///< without pixels
+};
+
+OpenedImage open_image(const std::filesystem::path& file, const SizeCheck& check) {
+    OpenedImage opened;
+    Source& source = opened.source;
+    OIIO::ImageSpec& spec = opened.spec;
+    ImageFile& image = opened.image;
+    source.file = file;
+    if (!std::filesystem::is_regular_file(file)) {
+        const bool is_there = std::filesystem::exists(file);
+        source.fail(is_there ? "this is not a regular file" : "there is no such file", is_there ? 0 : ENOENT);
+    }
+    recognise(source);
     open(source, spec);
-    ImageFile image;
     const ChosenLayer layer = choose_layer(parts_of(source, image), source.format == "openexr");
     source.part = layer.part;
+    opened.channels = layer.channels;
     image.warnings.insert(image.warnings.end(), layer.warnings.begin(), layer.warnings.end());
     if (!source.input->seek_subimage(layer.part, 0))
         source.fail("part " + std::to_string(layer.part) + " cannot be read");
@@ -314,20 +324,40 @@ ImageFile read_image_file(const std::filesystem::path& file, const SizeCheck& ch
     image.width = size_of(source, spec).width;
     image.height = size_of(source, spec).height;
     take_facts(source, spec, image);
-    read_pixels(source, spec, layer.channels, progress, image);
-    if (source.behind) {
-        const ImageHeader& header = source.behind->header();
-        put_in_order(header.order, image.width, image.height, image.pixels);
-        if (std::string warning = take_off_exposure(header, image.pixels); !warning.empty())
-            image.warnings.push_back(std::move(warning));
-    }
-    return image;
+    return opened;
+}
+
+/// Runs `body`, whose other exceptions become errors about the file.
+template <class Body>
+ImageFile naming_image(const std::filesystem::path& file, const Body& body) try {
+    return body();
 } catch (const std::invalid_argument& e) {
     throw Error(ErrorKind::bad_input, file.string() + ": " + e.what());
 } catch (const std::bad_alloc&) {
     throw Error(ErrorKind::out_of_resources, file.string() + ": not enough memory for the image");
 } catch (const std::filesystem::filesystem_error& e) {
     throw Error(ErrorKind::bad_input, file.string() + ": " + e.code().message(), {}, e.code().value());
+}
+
+}  // namespace
+
+ImageFile read_image_file(const std::filesystem::path& file, const SizeCheck& check, Progress& progress) {
+    return naming_image(file, [&] {
+        OpenedImage opened = open_image(file, check);
+        ImageFile image = std::move(opened.image);
+        read_pixels(opened.source, opened.spec, opened.channels, progress, image);
+        if (opened.source.behind) {
+            const ImageHeader& header = opened.source.behind->header();
+            put_in_order(header.order, image.width, image.height, image.pixels);
+            if (std::string warning = take_off_exposure(header, image.pixels); !warning.empty())
+                image.warnings.push_back(std::move(warning));
+        }
+        return image;
+    });
+}
+
+ImageFile read_image_facts(const std::filesystem::path& file, const SizeCheck& check) {
+    return naming_image(file, [&] { return open_image(file, check).image; });
 }
 
 }  // namespace hairbake

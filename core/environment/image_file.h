@@ -20,7 +20,7 @@ enum class OpenExrEnvironment { none, latlong, cube };
 /// Pixels as decoded: integers scaled to [0, 1] but not yet linearised.
 struct ImageFile {
     int width = 0, height = 0;
-    std::vector<Vec3f> pixels;                     ///< [height * width], row 0 on top
+    std::vector<Vec3f> pixels;                     ///< [height * width], row 0 on top; none from read_image_facts()
     std::string format;                            ///< "hdr", "openexr", "tiff", "pnm" (PFM), "png"
     std::optional<Chromaticities> chromaticities;  ///< that the file states
     bool integer = false;                          ///< the file holds integers
@@ -44,5 +44,10 @@ using SizeCheck = std::function<std::string(int width, int height)>;
 /// Throws Error(bad_input) with the file, the place, what was found and what is allowed.
 /// Throws Error(out_of_resources), Error(cancelled).
 ImageFile read_image_file(const std::filesystem::path& file, const SizeCheck& check, Progress& progress);
+
+/// The facts of an image without its pixels, from the header alone. It makes all checks that read_image_file() makes
+/// before it decodes pixels.
+/// Throws the same errors with the same words.
+ImageFile read_image_facts(const std::filesystem::path& file, const SizeCheck& check);
 
 }  // namespace hairbake

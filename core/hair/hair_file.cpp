@@ -45,21 +45,27 @@ std::string time_warning(const HairReader& reader, double time) {
     return text.str();
 }
 
-Groom read(const HairSource& source, const HairReadSettings& settings) {
+/// The reader of this file.
+const HairReader& reader_of(const HairSource& source) {
     std::array<std::byte, recognition_bytes> bytes{};
     const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(source.size, bytes.size()));
     source.copy(0, bytes.data(), count);
     const HairReader* reader = reader_of_bytes(std::span(bytes).first(count));
     if (!reader) reader = reader_of_name(source.name);
     if (!reader) refuse_beginning(source);
-    Groom groom = reader->read(source, settings);
-    if (settings.time != 0 && !reader->animated) groom.warnings.push_back(time_warning(*reader, settings.time));
+    return *reader;
+}
+
+Groom read(const HairSource& source, const HairReadSettings& settings) {
+    const HairReader& reader = reader_of(source);
+    Groom groom = reader.read(source, settings);
+    if (settings.time != 0 && !reader.animated) groom.warnings.push_back(time_warning(reader, settings.time));
     return groom;
 }
 
-}  // namespace
-
-Groom read_groom(const std::filesystem::path& file, const HairReadSettings& settings) {
+/// Opens the file and calls `body` with its bytes.
+template <class Body>
+auto with_file(const std::filesystem::path& file, const Body& body) {
     const std::string name = file.string();
     std::error_code problem;
     const auto status = std::filesystem::status(file, problem);
@@ -80,11 +86,21 @@ Groom read_groom(const std::filesystem::path& file, const HairReadSettings& sett
         refuse_hair(name, "the file could not be read to its end");
     };
     try {
-        return read({name, size, copy}, settings);
+        return body(HairSource{name, size, copy});
     } catch (const std::bad_alloc&) {
         throw Error(ErrorKind::out_of_resources,
                     name + ": not enough memory for a file of " + std::to_string(size) + " bytes");
     }
+}
+
+}  // namespace
+
+Groom read_groom(const std::filesystem::path& file, const HairReadSettings& settings) {
+    return with_file(file, [&](const HairSource& source) { return read(source, settings); });
+}
+
+void check_groom(const std::filesystem::path& file) {
+    with_file(file, [](const HairSource& source) { reader_of(source).check(source); });
 }
 
 Groom read_groom(std::span<const std::byte> bytes, const std::string& name, const HairReadSettings& settings) {

@@ -25,7 +25,11 @@ namespace hairbake {
 /// Throws Error(out_of_resources) when memory ends.
 Groom read_groom(const std::filesystem::path& file, const HairReadSettings& settings = {});
 
-/// The same from memory; `name` stands for the file in messages. The fuzzers call this one.
+/// Makes those checks of read_groom() that need only the file's header, and reads no more than that.
+/// Throws the same errors with the same words.
+void check_groom(const std::filesystem::path& file);
+
+/// The same as read_groom() from memory; `name` stands for the file in messages. The fuzzers call this one.
 Groom read_groom(std::span<const std::byte> bytes, const std::string& name, const HairReadSettings& settings = {});
 
 /// The model alone, for callers that have no use for the rest.

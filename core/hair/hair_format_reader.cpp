@@ -117,6 +117,8 @@ HairModel read_model(const HairSource& source, const HairHeader& h) {
     return model;
 }
 
+void check_hair_format(const HairSource& source) { read_header(source); }
+
 Groom read_hair_format(const HairSource& source, const HairReadSettings&) {
     const HairHeader header = read_header(source);
     Groom groom;
@@ -134,6 +136,7 @@ const HairReader hair_format_reader{
     .beginning = "\"HAIR\"",
     .animated = false,
     .recognises = begins_as_hair,
+    .check = check_hair_format,
     .read = read_hair_format,
 };
 

@@ -126,11 +126,20 @@ std::vector<std::uint32_t> strands_of(const Contents& c) {
     return begin;
 }
 
-HairModel read_model(const HairSource& source, const Contents& c) {
+/// The header, after its counts and offsets were checked.
+Contents checked_contents(const HairSource& source) {
+    const Contents c = read_contents(source);
     check_counts(source, c);
-    const auto count = static_cast<std::size_t>(c.strands * c.points);
+    const std::uint64_t count = c.strands * c.points;
     if (count > 0) check_array(source, c, "positions", c.positions, 4 * c.floats_a_position * count);
-    if (c.colors != 0) check_array(source, c, "vertex colours", c.colors, 16 * std::uint64_t{count});
+    if (c.colors != 0) check_array(source, c, "vertex colours", c.colors, 16 * count);
+    return c;
+}
+
+void check_tfx(const HairSource& source) { checked_contents(source); }
+
+HairModel read_model(const HairSource& source, const Contents& c) {
+    const auto count = static_cast<std::size_t>(c.strands * c.points);
     HairModel model;
     model.format = format_of(c);
     model.strand_begin = strands_of(c);
@@ -141,7 +150,7 @@ HairModel read_model(const HairSource& source, const Contents& c) {
 }
 
 Groom read_tfx(const HairSource& source, const HairReadSettings&) {
-    const Contents contents = read_contents(source);
+    const Contents contents = checked_contents(source);
     Groom groom;
     groom.model = read_model(source, contents);
     groom.description = description_of(contents);
@@ -160,6 +169,7 @@ const HairReader tfx_reader{
     .beginning = "the version 3.0 or 4.0 of a TressFX file (a float)",
     .animated = false,
     .recognises = begins_as_tfx,
+    .check = check_tfx,
     .read = read_tfx,
 };
 

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/base/short_number.h"
 #include "core/environment/light_set.h"
 #include "core/environment/sh_projection.h"
 #include "core/environment/sh_rotation.h"
@@ -109,9 +110,15 @@ void measure_all(IrradianceMaps& maps) {
     maps.interpolation_bound_relative = peak > 0 ? std::max({bound.x, bound.y, bound.z}) / peak : 0;
 }
 
+std::string degrees(double radians) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g degrees", radians * 180 / pi);
+    return text;
+}
+
 std::string percent(double ratio) {
     char text[32];
-    std::snprintf(text, sizeof text, "%.2g %%", 100 * ratio);
+    std::snprintf(text, sizeof text, ratio < 1 ? "%.2g %%" : "%.0f %%", 100 * ratio);
     return text;
 }
 
@@ -120,10 +127,9 @@ std::vector<std::string> warnings_of(const IrradianceMaps& maps, const Irradianc
     std::vector<std::string> warnings;
     const double texel = 2.0 / settings.face_size;
     if (texel > half_width)
-        warnings.push_back("a texel of the maps (" + std::to_string(texel * 180 / pi) +
-                           " degrees) is wider than the half-width of the specular lobe (" +
-                           std::to_string(half_width * 180 / pi) +
-                           " degrees): small lights will look blocky; raise irradiance.face_size");
+        warnings.push_back("a texel of the maps (" + degrees(texel) +
+                           ") is wider than the half-width of the specular lobe (" + degrees(half_width) +
+                           "): small lights will look blocky; raise irradiance.face_size");
     const double predicted = std::max(maps.predicted_error_diffuse, maps.predicted_error_specular);
     const bool automatic = !settings.sh_bands_diffuse || !settings.sh_bands_specular;
     if (settings.method == IrradianceMethod::sh && predicted > settings.sh_error)
@@ -153,7 +159,7 @@ void validate(const IrradianceSettings& s) {
     const auto in = [](auto value, auto low, auto high) { return value >= low && value <= high; };
     expect(in(s.face_size, 4, 256), "face_size", std::to_string(s.face_size), "4 to 256");
     expect(in(s.specular_maps, 2, 257), "specular_maps", std::to_string(s.specular_maps), "2 to 257");
-    expect(s.sh_error > 0 && s.sh_error <= 1, "sh_error", std::to_string(s.sh_error), "above 0, up to 1");
+    expect(s.sh_error > 0 && s.sh_error <= 1, "sh_error", short_number(s.sh_error), "above 0, up to 1");
     for (const auto& [bands, name] : {std::pair{s.sh_bands_diffuse, "diffuse"}, {s.sh_bands_specular, "specular"}})
         expect(!bands || in(*bands, 1, 128), std::string("sh_bands.") + name, std::to_string(bands.value_or(0)),
                "1 to 128, or auto");

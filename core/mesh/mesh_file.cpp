@@ -8,6 +8,7 @@
 #include <fstream>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "core/base/error.h"
@@ -180,7 +181,30 @@ private:
     std::vector<std::int64_t> normal_of_;  ///< of each position: index of its corners' normal, or why there is none
 };
 
+[[noreturn]] void refuse_unreadable(const std::filesystem::path& file, int error) {
+    const int known = error != 0 ? error : EIO;
+    throw Error(ErrorKind::bad_input, file.string() + ": " + std::generic_category().message(known), {}, known);
+}
+
+struct OpenMesh {
+    std::ifstream stream;
+    std::uintmax_t size;  ///< bytes
+};
+
+/// Opening comes after the look at the file: a named pipe without a writer would never be open.
+OpenMesh open_mesh(const std::filesystem::path& file) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(file, error);
+    if (error) refuse_unreadable(file, error.value());
+    if (size > kMostBytes) refuse_size(file.string(), size);
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) refuse_unreadable(file, errno);
+    return {std::move(stream), size};
+}
+
 }  // namespace
+
+void check_mesh(const std::filesystem::path& file) { open_mesh(file); }
 
 TriangleMesh read_mesh(std::span<const std::byte> bytes, const std::string& name) {
     if (bytes.size() > kMostBytes) refuse_size(name, bytes.size());
@@ -188,19 +212,11 @@ TriangleMesh read_mesh(std::span<const std::byte> bytes, const std::string& name
 }
 
 TriangleMesh read_mesh(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    std::error_code error;
-    const std::uintmax_t size = std::filesystem::file_size(file, error);
-    const auto refuse_unreadable = [&](int number) {
-        const int known = number != 0 ? number : EIO;
-        throw Error(ErrorKind::bad_input, file.string() + ": " + std::generic_category().message(known), {}, known);
-    };
-    if (error || !stream) refuse_unreadable(error ? error.value() : errno);
-    if (size > kMostBytes) refuse_size(file.string(), size);
+    auto [stream, size] = open_mesh(file);
     std::string text(size, '\0');
     errno = 0;
     stream.read(text.data(), static_cast<std::streamsize>(size));
-    if (stream.bad()) refuse_unreadable(errno);
+    if (stream.bad()) refuse_unreadable(file, errno);
     if (static_cast<std::uintmax_t>(stream.gcount()) != size)
         throw Error(ErrorKind::bad_input, file.string() + " ended after " + std::to_string(stream.gcount()) + " of " +
                                               std::to_string(size) + " bytes");

@@ -26,7 +26,11 @@ namespace hairbake {
 /// Throws Error(out_of_resources) when memory ends.
 TriangleMesh read_mesh(const std::filesystem::path& file);
 
-/// The same from memory; `name` stands for the file in messages. The fuzzer calls this one.
+/// Checks what read_mesh() checks before it reads: the file is there, can be opened, is a regular file and not too long.
+/// Throws the same errors with the same words.
+void check_mesh(const std::filesystem::path& file);
+
+/// The same as read_mesh() from memory; `name` stands for the file in messages. The fuzzer calls this one.
 TriangleMesh read_mesh(std::span<const std::byte> bytes, const std::string& name);
 
 }  // namespace hairbake

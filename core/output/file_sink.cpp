@@ -57,6 +57,24 @@ WrittenFile FileSink::finish() {
     return {file_.filename().string(), digest_.hex(), bytes_, {}, {}, {}};
 }
 
+namespace {
+
+/// Errors name `file`, which the person knows, and not the hidden one.
+void write_part(const std::filesystem::path& file, std::span<const std::byte> bytes) {
+    discard_part(file);
+    try {
+        FileSink sink(part_of(file));
+        sink.write(bytes);
+        sink.finish();
+    } catch (const Error& error) {
+        discard_part(file);
+        if (error.system_error() == 0) throw;
+        throw_system_error(file, error.system_error());
+    }
+}
+
+}  // namespace
+
 std::filesystem::path part_of(const std::filesystem::path& file) {
     return file.parent_path() / (".part-" + file.filename().string());
 }
@@ -70,18 +88,25 @@ void discard_part(const std::filesystem::path& file) noexcept {
     }
 }
 
+void prove_file_writable(const std::filesystem::path& file) {
+    std::error_code error;
+    if (std::filesystem::is_directory(file, error)) throw_system_error(file, EISDIR);
+    const std::filesystem::path parent = file.parent_path();
+    if (!parent.empty() && std::filesystem::status(parent, error).type() == std::filesystem::file_type::not_found)
+        throw Error(ErrorKind::bad_input,
+                    file.string() + " cannot be written: there is no folder " + parent.string() + "; make it first",
+                    "out", ENOENT);
+    write_part(file, {});
+    discard_part(file);
+}
+
 void write_whole_file(const std::filesystem::path& file, std::span<const std::byte> bytes) {
-    const std::filesystem::path part = part_of(file);
-    std::filesystem::remove(part);
-    try {
-        FileSink sink(part);
-        sink.write(bytes);
-        sink.finish();
-        std::filesystem::rename(part, file);
-    } catch (...) {
-        discard_part(file);
-        throw;
-    }
+    write_part(file, bytes);
+    std::error_code error;
+    std::filesystem::rename(part_of(file), file, error);
+    if (!error) return;
+    discard_part(file);
+    throw_system_error(file, error.value());
 }
 
 }  // namespace hairbake

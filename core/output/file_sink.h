@@ -57,8 +57,12 @@ void discard_part(const std::filesystem::path& file) noexcept;
 
 /// Writes a file that appears whole and replaces an existing one. `bytes` go to part_of(file) first; a failure removes
 /// that file.
-/// Throws as FileSink does, and std::filesystem::filesystem_error where the name cannot be taken.
+/// Throws as FileSink does, naming `file`, also where the name cannot be taken.
 void write_whole_file(const std::filesystem::path& file, std::span<const std::byte> bytes);
+
+/// Proves that write_whole_file() can write `file`: makes its hidden file and removes it again.
+/// Throws as write_whole_file().
+void prove_file_writable(const std::filesystem::path& file);
 
 /// Error for the system's errno `error` about `file`: its kind separates a full disk from other failures.
 [[noreturn]] void throw_system_error(const std::filesystem::path& file, int error);

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/json_nesting.h"
+#include "core/base/json_reason.h"
 #include "core/output/manifest_stages.h"
 #include "core/output/versions.h"
 #include "core/request/request_json.h"
@@ -191,7 +192,7 @@ std::vector<std::string> files_of_result(const std::filesystem::path& folder) {
         for (const Json& entry : manifest.at("files")) names.push_back(entry.at("name").get<std::string>());
         return names;
     } catch (const Json::exception& error) {
-        throw Error(ErrorKind::bad_input, file.string() + " is not a manifest of hairbake: " + error.what());
+        throw Error(ErrorKind::bad_input, file.string() + " is not a manifest of hairbake: " + json_reason(error));
     }
 }
 

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -20,9 +21,23 @@ namespace {
 
 /// Absolute, links followed, without a slash at the end.
 fs::path resolved(const fs::path& folder) {
-    fs::path path = fs::weakly_canonical(fs::absolute(folder)).lexically_normal();
+    std::error_code error;
+    fs::path path = fs::weakly_canonical(fs::absolute(folder, error), error).lexically_normal();
+    if (error) throw_system_error(folder, error.value());
     if (!path.has_filename()) path = path.parent_path();
     return path;
+}
+
+/// Both are canonical.
+bool is_within(const fs::path& place, const fs::path& folder) {
+    const auto [end, rest] = std::mismatch(folder.begin(), folder.end(), place.begin(), place.end());
+    return end == folder.end();
+}
+
+/// Nothing can be renamed to the place of a mounted file system.
+bool is_mount_point(const fs::path& folder) {
+    struct statx facts {};
+    return ::statx(AT_FDCWD, folder.c_str(), 0, 0, &facts) == 0 && (facts.stx_attributes & STATX_ATTR_MOUNT_ROOT);
 }
 
 [[noreturn]] void refuse(const fs::path& folder, const std::string& why) {
@@ -69,11 +84,13 @@ void collect_leftovers(const fs::path& path) {
 }  // namespace
 
 void check_result_folder(const fs::path& folder) {
+    if (folder.empty()) throw Error(ErrorKind::usage, "out is empty; allowed is the path of a folder", "out");
     std::error_code error;
     const fs::file_status status = fs::status(folder, error);
     if (status.type() == fs::file_type::not_found) return;
     if (error) refuse(folder, "cannot be looked at: " + error.message());
     if (!fs::is_directory(status)) refuse(folder, "is not a folder");
+    if (is_mount_point(folder)) refuse(folder, "is a mount point, which cannot be replaced; name a folder in it");
     fs::directory_iterator entries(folder, error);
     if (error) refuse(folder, "cannot be read: " + error.message());
     if (entries == fs::directory_iterator()) return;
@@ -90,6 +107,29 @@ void check_result_folder(const fs::path& folder) {
         const std::string name = entry.path().filename().string();
         if (std::find(known.begin(), known.end(), name) == known.end())
             refuse(folder, "holds " + name + ", which its manifest.json does not list");
+    }
+}
+
+void prove_writable(const fs::path& folder) try {
+    check_result_folder(folder);
+    const ResultFolder made_and_removed(folder);
+} catch (const Error& error) {
+    throw Error(error.kind(), error.what(), "out", error.system_error());
+}
+
+void check_outside(const fs::path& folder, std::span<const NamedInput> inputs) {
+    std::error_code error;
+    const fs::path inside = fs::canonical(folder, error);
+    if (error) return;  // there is nothing that could be deleted
+    for (const NamedInput& input : inputs) {
+        const fs::path parent = input.file.has_parent_path() ? input.file.parent_path() : fs::path(".");
+        for (const fs::path& place : {input.file, parent})
+            if (const fs::path found = fs::canonical(place, error); !error && is_within(found, inside))
+                throw Error(ErrorKind::usage,
+                            input.name + " is " + input.file.string() + ", which lies in the result folder " +
+                                folder.string() +
+                                ": writing the result would delete it; give another --out, or copy the input elsewhere",
+                            input.name);
     }
 }
 
@@ -111,17 +151,25 @@ void discard_staging(const fs::path& folder) noexcept {
     }
 }
 
-ResultFolder::ResultFolder(const fs::path& folder) : folder_(resolved(folder)), staging_(staging_folder(folder)) {
-    check_result_folder(folder_);
+ResultFolder::ResultFolder(const fs::path& folder)
+    : given_(folder), folder_(resolved(folder)), staging_(staging_folder(folder)) {
+    check_result_folder(given_);
     const fs::path parent = folder_.parent_path();
     for (fs::path p = parent; !fs::exists(p) && p.has_relative_path(); p = p.parent_path()) made_parent_ = p;
     std::error_code error;
     fs::create_directories(parent, error);
-    if (error) throw_system_error(parent, error.value());
+    if (error) throw_system_error(given_, error.value());
     collect_leftovers(folder_);
     fs::remove_all(staging_, error);  // of an earlier process with this number
     fs::create_directory(staging_, error);
-    if (error) throw_system_error(staging_, error.value());
+    if (error) throw_system_error(given_, error.value());
+}
+
+std::string ResultFolder::as_given(std::string text) const {
+    const std::string staging = staging_.string(), given = given_.string();
+    for (std::size_t at = text.find(staging); at != std::string::npos; at = text.find(staging, at + given.size()))
+        text.replace(at, staging.size(), given);
+    return text;
 }
 
 ResultFolder::~ResultFolder() {
@@ -134,7 +182,7 @@ ResultFolder::~ResultFolder() {
 void ResultFolder::commit() {
     sync_folder(staging_);
     if (!move(staging_, folder_, RENAME_NOREPLACE)) {
-        if (errno != EEXIST && errno != EINVAL && errno != ENOSYS) throw_system_error(folder_, errno);
+        if (errno != EEXIST && errno != EINVAL && errno != ENOSYS) throw_system_error(given_, errno);
         replace();
     }
     committed_ = true;
@@ -144,18 +192,18 @@ void ResultFolder::commit() {
 /// The folder is there: empty, or with an earlier result.
 void ResultFolder::replace() {
     if (move(staging_, folder_, 0)) return;  // it was empty
-    if (errno != ENOTEMPTY && errno != EEXIST) throw_system_error(folder_, errno);
-    check_result_folder(folder_);  // again: the folder may have changed during the bake
+    if (errno != ENOTEMPTY && errno != EEXIST) throw_system_error(given_, errno);
+    check_result_folder(given_);  // again: the folder may have changed during the bake
     if (move(staging_, folder_, RENAME_EXCHANGE)) return;
-    if (errno != EINVAL && errno != ENOSYS) throw_system_error(folder_, errno);
+    if (errno != EINVAL && errno != ENOSYS) throw_system_error(given_, errno);
 
     // A file system without exchange: the earlier result steps aside first.
     const fs::path aside = staging_.string() + "-old";
-    if (!move(folder_, aside, 0)) throw_system_error(folder_, errno);
+    if (!move(folder_, aside, 0)) throw_system_error(given_, errno);
     if (!move(staging_, folder_, 0)) {
         const int error = errno;
         move(aside, folder_, 0);
-        throw_system_error(folder_, error);
+        throw_system_error(given_, error);
     }
     std::error_code ignored;
     fs::remove_all(aside, ignored);

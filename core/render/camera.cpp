@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/base/short_number.h"
 
 namespace hairbake {
 namespace {
@@ -17,7 +18,7 @@ using std::numbers::pi;
 }
 
 double tangent_of_half(double fov_deg) {
-    if (!(fov_deg >= 1 && fov_deg <= 150)) refuse("fov_deg", std::to_string(fov_deg), "1 to 150");
+    if (!(fov_deg >= 1 && fov_deg <= 150)) refuse("fov_deg", short_number(fov_deg), "1 to 150");
     return std::tan(fov_deg * pi / 360);
 }
 
@@ -41,9 +42,9 @@ double framing_distance(const Camera& camera, const Vec3d& low, const Vec3d& hig
 Camera orbit_camera(const OrbitSettings& settings, const Vec3f& bounds_min, const Vec3f& bounds_max, double aspect) {
     if (!std::isfinite(settings.azimuth_deg)) refuse("azimuth_deg", "not finite", "a number of degrees");
     if (!(std::abs(settings.elevation_deg) <= 90))
-        refuse("elevation_deg", std::to_string(settings.elevation_deg), "-90 to 90");
+        refuse("elevation_deg", short_number(settings.elevation_deg), "-90 to 90");
     if (settings.distance && !(*settings.distance > 0 && std::isfinite(*settings.distance)))
-        refuse("distance", std::to_string(*settings.distance), "a positive length");
+        refuse("distance", short_number(*settings.distance), "a positive length");
     if (settings.target && !is_finite(*settings.target)) refuse("target", "not finite", "a point");
 
     Camera camera;

@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "core/base/error.h"
+#include "core/base/json_reason.h"
 
 namespace hairbake {
 namespace {
@@ -22,6 +23,7 @@ Json read_object(const std::filesystem::path& file) {
     if (!stream) throw Error(ErrorKind::bad_input, file.string() + ": " + std::generic_category().message(errno));
     std::string text(65536, '\0');
     stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    if (stream.bad()) throw Error(ErrorKind::bad_input, file.string() + ": " + std::generic_category().message(errno));
     text.resize(static_cast<std::size_t>(stream.gcount()));
     Json object = Json::parse(text, nullptr, false);
     if (!object.is_object()) throw Error(ErrorKind::bad_input, file.string() + " is no JSON object of at most 64 KiB");
@@ -62,7 +64,7 @@ Camera read_camera(const std::filesystem::path& file, const Vec3f& bounds_min, c
         orbit.fov_deg = object.value("fov_deg", orbit.fov_deg);
         return orbit_camera(orbit, bounds_min, bounds_max, aspect);
     } catch (const Json::exception& error) {
-        throw Error(ErrorKind::bad_input, file.string() + ": " + error.what());
+        throw Error(ErrorKind::bad_input, file.string() + ": " + json_reason(error));
     }
 }
 

@@ -1,6 +1,7 @@
 #include "core/render/render_request.h"
 
 #include "core/base/error.h"
+#include "core/base/short_number.h"
 
 namespace hairbake {
 namespace {
@@ -8,8 +9,8 @@ namespace {
 void expect(double value, double low, double high, const char* field) {
     if (!(value >= low && value <= high))
         throw Error(ErrorKind::usage,
-                    std::string(field) + " is " + std::to_string(value) + "; allowed is " + std::to_string(low) +
-                        " to " + std::to_string(high),
+                    std::string(field) + " is " + short_number(value) + "; allowed is " + short_number(low) + " to " +
+                        short_number(high),
                     field);
 }
 

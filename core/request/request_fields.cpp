@@ -167,6 +167,14 @@ const RequestField* find_field(const std::string& path) {
     return nullptr;
 }
 
+bool in_block(std::string_view path, std::string_view block) {
+    return path.size() > block.size() && path.starts_with(block) && path[block.size()] == '.';
+}
+
+bool is_or_lies_in(std::string_view path, std::string_view field_or_block) {
+    return path == field_or_block || in_block(path, field_or_block);
+}
+
 void set_at(Json& object, const std::string& path, Json value) {
     std::string pointer = "/" + path;
     std::replace(pointer.begin(), pointer.end(), '.', '/');

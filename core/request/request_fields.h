@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/request/request.h"
@@ -31,6 +32,12 @@ const std::vector<RequestField>& request_fields();
 
 /// The field of this path, or of this path in the first version; null where there is none.
 const RequestField* find_field(const std::string& path);
+
+/// Whether the field of this path stands in the block: "transmittance.voxels" in "transmittance".
+bool in_block(std::string_view path, std::string_view block);
+
+/// Whether the path is that of the field or block, or stands in it.
+bool is_or_lies_in(std::string_view path, std::string_view field_or_block);
 
 /// Sets `value` into `object` at a dotted path, and makes the objects on the way.
 void set_at(RequestField::Json& object, const std::string& path, RequestField::Json value);

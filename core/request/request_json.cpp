@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/json_nesting.h"
+#include "core/base/json_reason.h"
+#include "core/base/number_text.h"
+#include "core/base/spelling.h"
 #include "core/request/request_fields.h"
 
 namespace hairbake {
@@ -33,12 +37,20 @@ std::string names_in(const std::string& block) {
     return list;
 }
 
+/// " (did you mean transmittance.voxels?)" for "voxels", "transmittance.voxel" and the like; empty where nothing is close.
+std::string suggestion(const std::string& path) {
+    const std::vector<std::string> paths = field_paths();
+    for (const std::string& known : paths)
+        if (known.ends_with("." + path)) return " (did you mean " + known + "?)";
+    return did_you_mean(path, paths);
+}
+
 [[noreturn]] void refuse_unknown(const std::string& path) {
     const std::size_t dot = path.rfind('.');
     const std::string block = dot == std::string::npos ? "" : path.substr(0, dot);
     const bool known_block = block.empty() || is_block(block);
     throw Error(ErrorKind::usage,
-                path + " is not a field of the request; allowed are " +
+                path + " is not a field of the request" + suggestion(path) + "; allowed are " +
                     (known_block && !block.empty() ? "in " + block + ": " + names_in(block) : names_in("")),
                 path);
 }
@@ -95,10 +107,14 @@ private:
     std::set<const RequestField*> set_;
 };
 
-/// Reads `text` as JSON, or as plain text where it is not JSON. `path` is the field that gets the value.
+/// Reads `text` as JSON, as a number that JSON does not know (".05", "1.", "+5"), or as plain text. `path` is the field that
+/// gets the value.
 Json json_or_text(const std::string& text, const std::string& path) {
     Json value = Json::parse(text, nullptr, false);
-    if (value.is_discarded()) return text;
+    if (value.is_discarded()) {
+        const std::optional<double> number = number_of(text);
+        return number ? Json(*number) : Json(text);
+    }
     check_nesting(text, path, ErrorKind::usage, path);
     return value;
 }
@@ -128,7 +144,7 @@ std::vector<std::string> merge_json(BakeRequest& request, std::string_view text,
     try {
         merge.object(Json::parse(text), "");
     } catch (const Json::exception& error) {
-        throw Error(ErrorKind::usage, source + " is not JSON: " + error.what());
+        throw Error(ErrorKind::usage, source + " is not JSON: " + json_reason(error));
     } catch (const Error& error) {
         throw Error(error.kind(), source + ": " + error.what(), error.field());
     }

@@ -12,14 +12,15 @@ std::string preset_description(const Preset& preset) {
 }
 
 void apply_preset(BakeRequest& request, std::string_view name) {
-    std::string names;
+    if (name == default_preset) return;
+    std::string names(default_preset);
     for (const Preset& preset : presets()) {
         if (preset.name == name) {
             const std::string fields = nlohmann::json::parse(preset.json).at("request").dump();
             merge_json(request, fields, "preset " + std::string(name));
             return;
         }
-        names += (names.empty() ? "" : ", ") + std::string(preset.name);
+        names += ", " + std::string(preset.name);
     }
     throw Error(ErrorKind::usage, "there is no preset \"" + std::string(name) + "\"; allowed is one of " + names,
                 "preset");

@@ -14,13 +14,16 @@ struct Preset {
     std::string_view json;  ///< the file: {"description": text, "request": fields that differ from the defaults}
 };
 
+/// The name that stands for the defaults in apply_preset(), where no preset's fields are taken.
+inline constexpr std::string_view default_preset = "default";
+
 /// All presets, in the order in which a person should meet them.
 std::span<const Preset> presets();
 
 /// The purpose of the preset, in one sentence.
 std::string preset_description(const Preset& preset);
 
-/// Takes the preset's fields over into `request`.
+/// Takes the preset's fields over into `request`; those of default_preset are none.
 /// Throws Error(usage) naming the presets there are.
 void apply_preset(BakeRequest& request, std::string_view name);
 

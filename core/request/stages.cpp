@@ -41,13 +41,9 @@ constexpr double tracing_factor = 10;  ///< how much longer the transmittance ta
 
 // ---- settings ------------------------------------------------------------------------------------------------------
 
-bool in_block(const std::string& path, Text block) {
-    return path.size() > block.size() && path.starts_with(block) && path[block.size()] == '.';
-}
-
 bool reads(const Stage& stage, const RequestField& field) {
     return std::any_of(stage.settings.begin(), stage.settings.end(),
-                       [&](Text read) { return field.path == read || in_block(field.path, read); });
+                       [&](Text read) { return is_or_lies_in(field.path, read); });
 }
 
 /// "fiber.kajiya_kay.exponent" is a parameter of the model "kajiya-kay"; other fields are of no model.
@@ -93,6 +89,12 @@ const std::vector<std::string>& formats_of(const Stage& stage) {
     static const std::vector<std::string> none;
     const auto found = lists.find(stage.name);
     return found == lists.end() ? none : found->second;
+}
+
+bool reads_field(const Stage& stage, std::string_view path) {
+    const bool is_input = std::find(stage.inputs.begin(), stage.inputs.end(), path) != stage.inputs.end();
+    return is_input || std::any_of(stage.settings.begin(), stage.settings.end(),
+                                   [&](Text read) { return is_or_lies_in(path, read); });
 }
 
 std::vector<const Stage*> stages_of(const BakeRequest& request) {
@@ -155,10 +157,12 @@ std::vector<Phase> planned_phases(std::span<const Stage* const> stages, const Ba
             if (planned.name == phase.name) return;
         phases.push_back(phase);
     };
+    for (const InputPhase& read : input_phases)
+        if (std::any_of(stages.begin(), stages.end(), [&](const Stage* stage) {
+                return std::find(stage->inputs.begin(), stage->inputs.end(), read.input) != stage->inputs.end();
+            }))
+            add(read.phase);
     for (const Stage* stage : stages) {
-        for (const InputPhase& read : input_phases)
-            if (std::find(stage->inputs.begin(), stage->inputs.end(), read.input) != stage->inputs.end())
-                add(read.phase);
         for (Phase phase : stage->phases) {
             if (phase.name == "reference" && request.transmittance.reference_vertices == 0) continue;
             if (phase.name == "transmittance" && request.transmittance.method == TransmittanceMethod::trace)

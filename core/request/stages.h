@@ -52,6 +52,9 @@ std::string versions_text();
 /// Null where there is no stage of this name.
 const Stage* find_stage(std::string_view name);
 
+/// Whether the stage reads the field of this path ("transmittance.voxels"), an input or a setting. It reads no outputs.
+bool reads_field(const Stage& stage, std::string_view path);
+
 /// The stages that the request asks for, in the order of stages().
 std::vector<const Stage*> stages_of(const BakeRequest& request);
 
@@ -74,7 +77,8 @@ std::string bake_id(const StageKeys& keys, const BakeRequest& request);
 /// read give the same request.
 BakeRequest request_alone(const Stage& stage, const BakeRequest& request);
 
-/// The phases of a bake of these stages, in order: inputs are read when the first stage needs them; "write" is last.
+/// The phases of a bake of these stages, in order: all inputs are read first, so that a fault in one is known before the
+/// work; "write" is last.
 /// Shares sum to 1 and are rough.
 std::vector<Phase> planned_phases(std::span<const Stage* const> stages, const BakeRequest& request);
 

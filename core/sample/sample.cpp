@@ -40,6 +40,7 @@ std::vector<std::filesystem::path> write_samples(const std::filesystem::path& fo
                                                  Progress& progress) {
     const GroomSettings groom = groom_of(settings);
     create_folder(folder);
+    for (const char* name : sample_files) prove_file_writable(folder / name);
     std::vector<std::filesystem::path> files;
     // Each file appears whole, because it is written under another name first. No file is begun after a cancel, so
     // that nothing is left after discard_sample_parts().

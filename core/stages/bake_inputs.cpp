@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/file_identity.h"
 #include "core/base/naming_file.h"
+#include "core/base/short_number.h"
 #include "core/environment/environment_files.h"
 #include "core/environment/environment_reader.h"
 #include "core/hair/hair_file.h"
@@ -49,6 +50,34 @@ bool reads(const Stage& stage, std::string_view input) {
     return std::find(stage.inputs.begin(), stage.inputs.end(), input) != stage.inputs.end();
 }
 
+bool read(std::span<const Stage* const> stages, std::string_view input) {
+    return std::any_of(stages.begin(), stages.end(), [&](const Stage* stage) { return reads(*stage, input); });
+}
+
+bool read_setting(std::span<const Stage* const> stages, std::string_view setting) {
+    return std::any_of(stages.begin(), stages.end(), [&](const Stage* stage) {
+        return std::find(stage->settings.begin(), stage->settings.end(), setting) != stage->settings.end();
+    });
+}
+
+/// Runs `body`. Its errors about a file get the name of the request's field.
+template <class Body>
+void naming_field(const char* field, const Body& body) try {
+    body();
+} catch (const Error& error) {
+    throw Error(error.kind(), error.what(), error.field().empty() ? field : error.field(), error.system_error());
+}
+
+/// Empty where the file has no transparency, or the request says how opaque the strands are.
+std::string transparency_warning(const HairModel& model, const StrandSettings& settings) {
+    if (settings.opacity_from_file || settings.opacity != 1) return {};
+    const float low = model.transparency.empty() ? model.default_transparency : std::ranges::min(model.transparency);
+    const float high = model.transparency.empty() ? model.default_transparency : std::ranges::max(model.transparency);
+    if (low == 0 && high == 0) return {};
+    return "the hair file's transparency (" + short_number(low) + " to " + short_number(high) +
+           ") is not used: strand.opacity is 1; strand.opacity = from_file takes it";
+}
+
 HairFacts facts_of(const HairModel& model) {
     const Bounds bounds = bounds_of(model.positions);
     return {model.strand_count(), model.vertex_count(), model.vertex_count() - model.strand_count(), bounds.low,
@@ -59,11 +88,25 @@ MeshFacts facts_of(const TriangleMesh& mesh) { return {mesh.positions.size(), me
 
 }  // namespace
 
-void BakeInputs::read_for(const Stage& stage) {
-    if (reads(stage, "hair") && request_.hair && !hair_)
-        clock_.run("read_hair", [&](Progress& progress) { read_hair_and_meshes(progress); });
-    if (reads(stage, "environment") && request_.environment && !environment_)
-        clock_.run("read_environment", [&](Progress& progress) { read_sky(progress); });
+void check_headers(const BakeRequest& request, std::span<const Stage* const> stages) {
+    if (read(stages, "hair") && request.hair) {
+        naming_field("hair", [&] { check_groom(*request.hair); });
+        if (request.occluder) naming_field("occluder", [&] { check_mesh(*request.occluder); });
+        if (request.receiver) naming_field("receiver", [&] { check_mesh(*request.receiver); });
+    }
+    if (read(stages, "environment") && request.environment)
+        naming_field("environment", [&] { check_environment(*request.environment, request.environment_settings); });
+}
+
+void BakeInputs::read_for(std::span<const Stage* const> stages) {
+    const bool hair = read(stages, "hair") && request_.hair, sky = read(stages, "environment") && request_.environment;
+    check_headers(request_, stages);
+    if (hair)
+        clock_.run("read_hair", [&](Progress& progress) {
+            read_hair_and_meshes(progress);
+            if (read_setting(stages, "strand")) strands();
+        });
+    if (sky) clock_.run("read_environment", [&](Progress& progress) { read_sky(progress); });
 }
 
 void BakeInputs::read_hair_and_meshes(Progress& progress) {
@@ -80,6 +123,8 @@ void BakeInputs::read_hair_and_meshes(Progress& progress) {
     hair_ = std::move(groom.model);
     facts_.hair_extras = groom.extras;
     warnings_.insert(warnings_.end(), groom.warnings.begin(), groom.warnings.end());
+    if (std::string warning = transparency_warning(*hair_, request_.strand); !warning.empty())
+        warnings_.push_back(std::move(warning));
     if (request_.occluder) read_occluder();
     if (request_.receiver) {
         receiver_ = read_mesh(*request_.receiver);
@@ -121,8 +166,7 @@ const StrandGeometry& BakeInputs::strands() {
 }
 
 void BakeInputs::release_unless_read_by(std::span<const Stage* const> stages) {
-    if (!std::any_of(stages.begin(), stages.end(), [](const Stage* stage) { return reads(*stage, "hair"); }))
-        strands_.reset();
+    if (!read(stages, "hair")) strands_.reset();
 }
 
 InputFacts BakeInputs::take_facts(bool keep_pixels) {

@@ -1,4 +1,4 @@
-// The input files of a bake: each is read once, when the first stage needs it, and shared by the stages.
+// The input files of a bake: each is read once, before the first stage runs, and shared by the stages.
 #pragma once
 
 #include <optional>
@@ -17,6 +17,10 @@
 
 namespace hairbake {
 
+/// Checks the inputs that the stages name, as far as the request has them, by their headers alone.
+/// Throws the errors that reading would throw, with the name of the request's field.
+void check_headers(const BakeRequest& request, std::span<const Stage* const> stages);
+
 /// Not thread-safe. Every reading function may throw Error(bad_input) naming the file, also where the file changes
 /// while it is read: its digest would then be that of other bytes than the bake saw.
 class BakeInputs {
@@ -24,9 +28,10 @@ public:
     /// All arguments must outlive this object.
     BakeInputs(const BakeRequest& request, PhaseClock& clock) : request_(request), clock_(clock) {}
 
-    /// Reads the files that the stage names, as far as the request has them, in the phases read_hair and
-    /// read_environment; files that are read already are not read again.
-    void read_for(const Stage& stage);
+    /// Reads the files that the stages name, as far as the request has them, in the phases read_hair and
+    /// read_environment. Before that it checks the headers of all, so that a fault of the last one is known at once.
+    /// Makes the strands, too, where a stage reads their settings: they may lack a width.
+    void read_for(std::span<const Stage* const> stages);
 
     // The results of read_for(). An input that the request does not name is null, or fails a precondition.
     const HairModel& hair() const { return *hair_; }

@@ -23,7 +23,6 @@ constexpr StageCode table[] = {
 StagePart run_stage(const Stage& stage, StageContext& context) {
     for (const StageCode& code : table) {
         if (code.stage != stage.name) continue;
-        context.inputs.read_for(stage);
         StagePart part;
         part.stage = &stage;
         part.key = stage_key(stage, context.inputs.digests(), context.request);

@@ -15,7 +15,7 @@ struct StageContext {
     PhaseClock& clock;
 };
 
-/// Reads the inputs of the stage and runs the stage.
+/// Runs the stage, whose inputs have been read (BakeInputs::read_for).
 /// Throws Error as bake().
 StagePart run_stage(const Stage& stage, StageContext& context);
 

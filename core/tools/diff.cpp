@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/short_number.h"
 #include "core/environment/image_file.h"
 #include "core/output/canvas.h"
 #include "core/output/file_sink.h"
@@ -41,18 +42,27 @@ struct Sums {
     Json relative() const { return mean() != 0 ? Json(rmse() / mean()) : Json(); }
 };
 
-ImageFile read_linear(const std::filesystem::path& file, Progress& progress) {
-    const auto check = [](int width, int height) {
-        constexpr int most = 16384;
-        if (width >= 1 && height >= 1 && width <= most && height <= most) return std::string();
-        return "the size is " + std::to_string(width) + " x " + std::to_string(height) +
-               "; allowed are 1 to 16384 pixels each";
-    };
-    ImageFile image = read_image_file(file, check, progress);
-    if (image.integer)
+std::string fault_of_size(int width, int height) {
+    constexpr int most = 16384;
+    if (width >= 1 && height >= 1 && width <= most && height <= most) return {};
+    return "the size is " + std::to_string(width) + " x " + std::to_string(height) +
+           "; allowed are 1 to 16384 pixels each";
+}
+
+/// Checks both pictures by their headers: that they are linear and of one size.
+void check_pictures(const std::filesystem::path& first, const std::filesystem::path& second) {
+    const auto facts_of = [](const std::filesystem::path& file) {
+        ImageFile image = read_image_facts(file, fault_of_size);
+        if (!image.integer) return image;
         throw Error(ErrorKind::bad_input,
                     file.string() + " holds integers; allowed are linear pictures in floating point (OpenEXR)");
-    return image;
+    };
+    const ImageFile a = facts_of(first), b = facts_of(second);
+    if (a.width == b.width && a.height == b.height) return;
+    throw Error(ErrorKind::bad_input, second.string() + " is " + std::to_string(b.width) + " x " +
+                                          std::to_string(b.height) + " pixels; allowed is the size of " +
+                                          first.string() + ", " + std::to_string(a.width) + " x " +
+                                          std::to_string(a.height));
 }
 
 /// The next of 1, 2 and 5 times a power of ten; 1 where there is none.
@@ -101,7 +111,7 @@ void check_arguments(const std::optional<std::filesystem::path>& picture, std::o
     if (picture && picture->extension() != ".png")
         throw Error(ErrorKind::usage, "out is " + picture->string() + "; allowed is a name that ends in .png", "out");
     if (scale && !(*scale > 0 && std::isfinite(*scale)))
-        throw Error(ErrorKind::usage, "scale is " + std::to_string(*scale) + "; allowed is a positive number", "scale");
+        throw Error(ErrorKind::usage, "scale is " + short_number(*scale) + "; allowed is a positive number", "scale");
 }
 
 struct Difference {
@@ -128,12 +138,10 @@ Difference difference_of(const ImageFile& a, const ImageFile& b) {
 std::string diff(const std::filesystem::path& first, const std::filesystem::path& second,
                  const std::optional<std::filesystem::path>& picture, std::optional<double> scale, Progress& progress) {
     check_arguments(picture, scale);
-    const ImageFile a = read_linear(first, progress), b = read_linear(second, progress);
-    if (a.width != b.width || a.height != b.height)
-        throw Error(ErrorKind::bad_input, second.string() + " is " + std::to_string(b.width) + " x " +
-                                              std::to_string(b.height) + " pixels; allowed is the size of " +
-                                              first.string() + ", " + std::to_string(a.width) + " x " +
-                                              std::to_string(a.height));
+    check_pictures(first, second);
+    if (picture) prove_file_writable(*picture);
+    const ImageFile a = read_image_file(first, fault_of_size, progress);
+    const ImageFile b = read_image_file(second, fault_of_size, progress);
     const Difference difference = difference_of(a, b);
     const Sums &all = difference.all, &lit = difference.lit;
     Json report{{"first", first.string()},

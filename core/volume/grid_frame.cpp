@@ -6,6 +6,7 @@
 
 #include "core/base/assert.h"
 #include "core/base/error.h"
+#include "core/base/short_number.h"
 #include "core/volume/strand_spacing.h"
 
 namespace hairbake {
@@ -57,14 +58,14 @@ GridFrame make_grid_frame(const StrandGeometry& strands, const TransmittanceSett
     if (least > asked) frame.reason = VoxelReason::width;
     frame.voxel_size = std::max(asked, least);
     if (!(frame.voxel_size > 1e-30 && frame.voxel_size < 1e30))
-        throw Error(ErrorKind::bad_input, "the hair model is " + std::to_string(longest) +
-                                              " units large, which makes voxels of " +
-                                              std::to_string(frame.voxel_size) + "; allowed are 1e-30 to 1e30");
+        throw Error(ErrorKind::bad_input, "the hair model is " + short_number(longest) +
+                                              " units large, which makes voxels of " + short_number(frame.voxel_size) +
+                                              "; allowed are 1e-30 to 1e30");
     // Half a voxel more than 1,024, for the rounding of the division above.
     if (longest / frame.voxel_size > 1024.5)
         throw Error(ErrorKind::usage,
-                    "transmittance.voxel_size is " + std::to_string(asked) + ", which makes " +
-                        std::to_string(longest / frame.voxel_size) +
+                    "transmittance.voxel_size is " + short_number(asked) + ", which makes " +
+                        short_number(std::ceil(longest / frame.voxel_size)) +
                         " voxels on the longest axis; allowed are at most 1024",
                     "transmittance.voxel_size");
     frame.origin = strands.bounds_min - Vec3f(static_cast<float>(frame.voxel_size));

@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/base/short_number.h"
 #include "core/visibility/direction_moments.h"
 #include "core/visibility/direction_set.h"
 #include "core/visibility/hemisphere_means.h"
@@ -24,8 +25,8 @@ void check(const TransmittanceScene& scene, const TransmittanceSettings& setting
     const auto check_range = [](const char* field, double value, double low, double high) {
         if (!(value >= low && value <= high))
             throw Error(ErrorKind::usage,
-                        std::string(field) + " is " + std::to_string(value) + "; allowed is " + std::to_string(low) +
-                            " to " + std::to_string(high),
+                        std::string(field) + " is " + short_number(value) + "; allowed is " + short_number(low) +
+                            " to " + short_number(high),
                         field);
     };
     check_range("transmittance.opacity_maps.layers", settings.opacity_maps.layers, 1, 16);

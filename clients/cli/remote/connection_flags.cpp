@@ -7,7 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "clients/cli/common_flags.h"
 #include "clients/cli/messages.h"
+#include "clients/cli/option_values.h"
 #include "clients/cli/signal_watch.h"
 
 namespace hairbake {
@@ -20,6 +22,8 @@ std::string read_token(const std::string& file) {
     if (!stream) throw Error(ErrorKind::bad_input, file + ": " + std::generic_category().message(errno), "token-file");
     std::string token(longest_token + 1, '\0');
     stream.read(token.data(), static_cast<std::streamsize>(token.size()));
+    if (stream.bad())
+        throw Error(ErrorKind::bad_input, file + ": " + std::generic_category().message(errno), "token-file");
     token.resize(static_cast<std::size_t>(stream.gcount()));
     token.erase(token.find_last_not_of(" \t\r\n") + 1);
     const auto allowed = [](unsigned char c) { return c > 0x20 && c < 0x7f; };
@@ -57,11 +61,10 @@ void add_connection_flags(CLI::App& command, ConnectionFlags& flags) {
     command.add_option("--ca-file", flags.ca_file, "certificates (PEM) to trust instead of the system's")
         ->type_name("FILE");
     command.add_option("--patience", flags.patience_s, "seconds of retries while the server cannot be reached")
-        ->check(CLI::Range(0.0, 86400.0))
+        ->transform(number(0, 86400))
+        ->type_name("S")
         ->capture_default_str();
-    command
-        .add_option("--progress", flags.progress, "auto (a bar on a terminal), json (lines on standard output) or none")
-        ->check(CLI::IsMember({"auto", "json", "none"}));
+    add_progress_flag(command, flags.progress);
     command.footer(remote_exit_code_help());
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "clients/cli/commands.h"
+#include "clients/cli/option_values.h"
+#include "clients/cli/output.h"
 #include "clients/cli/remote/outcome.h"
 
 namespace hairbake {
@@ -57,7 +59,7 @@ void add_delete_command(CLI::App& app, Action& action) {
     command
         ->add_option("--as", options->kind,
                      "model or environment: the service lists it; mesh: it was sent only (default)")
-        ->check(CLI::IsMember({"model", "environment", "mesh"}));
+        ->check(one_of({"model", "environment", "mesh"}));
     command->add_flag("--force", options->force,
                       "also if done bakes or versions of names refer to it; without it they are listed");
     command->footer("Results that were baked from an input stay.\n\n");

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "clients/cli/messages.h"
+#include "clients/cli/output.h"
 #include "clients/cli/remote/fetch.h"
 
 namespace hairbake {
@@ -82,11 +83,6 @@ void tell_how_to_go_on(const ConnectionFlags& flags, const ServerOptions& option
 
 }  // namespace
 
-void print_line(const std::string& line) {
-    std::printf("%s\n", line.c_str());
-    std::fflush(stdout);
-}
-
 std::string in_megabytes(std::uint64_t bytes) {
     char text[40];
     std::snprintf(text, sizeof text, "%.1f MB", static_cast<double>(bytes) / 1e6);
@@ -105,6 +101,7 @@ void await_bakes(const ConnectionFlags& flags, const ServerOptions& options, con
             for (EndedBake& bake : bakes) {
                 bake.message = awaited.words(bake.message);
                 const std::string folder = bake.state == "done" ? awaited.folder(bake.id) : "";
+                if (!folder.empty()) check_outside(folder, awaited.inputs);
                 fetched.push_back(folder.empty() ? Fetched() : fetch_result(server, bake.id, folder));
             }
         });

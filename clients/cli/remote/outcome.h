@@ -7,6 +7,7 @@
 
 #include "clients/cli/remote/connection_flags.h"
 #include "clients/cli/remote/wait.h"
+#include "core/bake.h"
 
 namespace hairbake {
 
@@ -17,16 +18,14 @@ struct Awaited {
     std::function<std::string(const std::string& id)> folder = [](const std::string&) { return ""; };
     /// Replaces parts of a message by words for the user, e.g. digests by paths.
     std::function<std::string(std::string)> words = [](std::string text) { return text; };
-    std::string remark;  ///< appended to the line of a done bake
+    std::string remark;                ///< appended to the line of a done bake
+    std::vector<NamedInput> inputs{};  ///< must not lie in a folder of a result
 };
 
 /// Waits and fetches; prints one line for each bake that is done (JSON lines with --progress json). On an
 /// interrupt the bakes continue on the server; a message says how to resume the wait and how to cancel them.
 /// Throws RemoteError(bake_failed) or RemoteError(bake_cancelled) when some are not done.
 void await_bakes(const ConnectionFlags& flags, const ServerOptions& options, const Awaited& awaited);
-
-/// Prints a line on standard output and flushes it.
-void print_line(const std::string& line);
 
 /// "3.2 MB".
 std::string in_megabytes(std::uint64_t bytes);

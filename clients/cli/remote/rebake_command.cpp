@@ -7,6 +7,8 @@
 
 #include "clients/cli/commands.h"
 #include "clients/cli/messages.h"
+#include "clients/cli/option_values.h"
+#include "clients/cli/output.h"
 #include "clients/cli/remote/outcome.h"
 #include "clients/cli/remote/upload.h"
 #include "core/base/json_nesting.h"
@@ -81,6 +83,7 @@ void tell(const RebakeOptions& options, const Json& answer) {
 void run(RebakeOptions options) {
     options.wait = options.wait || !options.folder.empty();
     check(options);
+    if (!options.folder.empty()) prove_writable(std::filesystem::path(options.folder) / "any-bake");
     InputFiles inputs;
     inputs.add(options.environment, "environment");
     if (!options.replaces.empty()) inputs.add(options.replaces, "replaces");
@@ -101,6 +104,8 @@ void run(RebakeOptions options) {
     awaited.which = "--batch " + batch;
     awaited.wait = [&](Server& server) { return wait_for_batch(server, batch); };
     awaited.words = [&](std::string text) { return inputs.with_paths(std::move(text)); };
+    awaited.inputs = {{"environment", options.environment}};
+    for (const std::string& model : options.models) awaited.inputs.push_back({"model", model});
     if (!options.folder.empty())
         awaited.folder = [&](const std::string& id) { return (std::filesystem::path(options.folder) / id).string(); };
     await_bakes(options.connection, server_settings, awaited);
@@ -128,7 +133,9 @@ void add_rebake_command(CLI::App& app, Action& action) {
             ->type_name("JSON");
     }
     command->add_option("--priority", options->priority, "-10 to 10: higher ones are baked first")
-        ->check(CLI::Range(-10, 10));
+        ->transform(whole_number(-10, 10))
+        ->type_name("N")
+        ->capture_default_str();
     command->add_flag("--dry-run", options->dry_run, "only print what is stored and what would be computed");
     command->add_flag("--wait", options->wait, "wait until all bakes have ended");
     command->add_option("--fetch", options->folder, "wait, then fetch each result into DIR/ID")->type_name("DIR");

@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "clients/cli/commands.h"
+#include "clients/cli/option_values.h"
+#include "clients/cli/output.h"
 #include "clients/cli/remote/outcome.h"
 
 namespace hairbake {
@@ -100,7 +102,7 @@ void add_status_command(CLI::App& app, Action& action) {
     command->add_option("--batch", options->batch, "id of a batch, as rebake prints it: shows its counts")
         ->type_name("ID");
     command->add_option("--state", options->state, "of the newest, only those in this state")
-        ->check(CLI::IsMember({"queued", "running", "done", "failed", "cancelled"}));
+        ->check(one_of({"queued", "running", "done", "failed", "cancelled"}));
     command->add_flag("--json", options->json, "the server's answers, one JSON object per line");
     add_connection_flags(*command, options->connection);
     command->callback([options, &action] {

@@ -6,6 +6,8 @@
 
 #include "clients/cli/commands.h"
 #include "clients/cli/messages.h"
+#include "clients/cli/option_values.h"
+#include "clients/cli/output.h"
 #include "clients/cli/remote/outcome.h"
 #include "clients/cli/remote/upload.h"
 #include "clients/cli/request_flags.h"
@@ -53,7 +55,11 @@ std::vector<Job> make_jobs(const SubmitOptions& options) {
                 throw Error(ErrorKind::usage,
                             other->second + " and " + job.label + " would both be fetched into " + job.folder, "fetch");
         }
-        if (!job.folder.empty()) check_result_folder(job.folder);
+        if (!job.folder.empty()) {
+            check_outside(job.folder, inputs_of(job.request));
+            check_request_file(flags, job.folder);
+            prove_writable(job.folder);
+        }
         jobs.push_back(std::move(job));
     }
     return jobs;
@@ -120,7 +126,9 @@ void add_submit_command(CLI::App& app, Action& action) {
     add_request_flags(*command, options->request,
                       "HDR environment, one picture (lat-long, cross or strip); alone: irradiance maps only");
     command->add_option("--priority", options->priority, "-10 to 10: higher ones are baked first")
-        ->check(CLI::Range(-10, 10));
+        ->transform(whole_number(-10, 10))
+        ->type_name("N")
+        ->capture_default_str();
     command->add_flag("--wait", options->wait, "wait until the bakes have ended");
     command
         ->add_option("--fetch", options->folder,

@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "clients/cli/commands.h"
+#include "clients/cli/option_values.h"
+#include "clients/cli/output.h"
 #include "clients/cli/remote/outcome.h"
 #include "clients/cli/remote/upload.h"
 
@@ -64,7 +66,7 @@ void add_upload_command(CLI::App& app, Action& action) {
     command
         ->add_option("--as", options->kind,
                      "model or environment: the service reads and lists it; mesh: for --name only")
-        ->check(CLI::IsMember({"model", "environment", "mesh"}));
+        ->check(one_of({"model", "environment", "mesh"}));
     command->add_option("--name", options->name, "makes name:NAME refer to this file; earlier versions stay")
         ->type_name("NAME");
     command->add_option("--note", options->note, "kept with the name's new version")->type_name("TEXT");

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include "clients/cli/commands.h"
+#include "clients/cli/output.h"
 #include "clients/cli/remote/fetch.h"
 #include "clients/cli/remote/outcome.h"
 #include "core/bake.h"
@@ -33,7 +34,7 @@ struct FetchOptions {
 
 void run_fetch(const FetchOptions& options) {
     check_ids({options.id}, "id");
-    check_result_folder(options.folder);
+    prove_writable(options.folder);
     Fetched fetched;
     run_phase(options.connection, server_options(options.connection), {{"fetch", 1}},
               [&](Server& server) { fetched = fetch_result(server, options.id, options.folder); });

@@ -2,27 +2,49 @@
 from __future__ import annotations
 
 import argparse
+import difflib
+import errno
 import json
 import os
+import re
 import shlex
 import signal
 import sys
 from pathlib import Path
 from typing import Any, Callable, Dict, List, Optional
 
-from ._client import Bake, Client
-from ._errors import BakeCancelled, BakeFailed, HairbakeError, Refused, UsageError
-from ._fetch import check_result_folder
+from ._client import Bake, Client, check_files
+from ._errors import BakeCancelled, BakeFailed, HairbakeError, OutOfResources, Refused, UsageError, words_of
+from ._fetch import check_outside, check_result_folder, prove_writable
 from ._http import identifier
 
-EPILOG = """exit codes: 0 done, 2 usage, 3 bad input, 5 interrupted (the bake continues on the server), 6 server
+EPILOG = """exit codes: 0 done, 2 usage, 3 bad input, 4 the disk is full, 5 interrupted (the bake continues on the server), 6 server
 unreachable, 7 refused, 8 bake failed, 9 bake cancelled on the server"""
 Arguments = argparse.Namespace
 #: Fields of the block irradiance in the first version, and their places now.
 MOVED = {"model": "fiber.model", "exponent": "fiber.kajiya_kay.exponent",
          **{name: f"environment_settings.{name}" for name in
             ("layout", "latlong", "rotation_deg", "exposure_stops", "tint", "invalid_radiance")}}
+NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")  #: also those that JSON does not know: .5, 1., +5
 LIGHTING_BLOCKS = ("irradiance", "environment_settings", "fiber")  #: of the request: `rebake` may change them
+
+
+def output_failure(error: OSError) -> HairbakeError:
+    """The error for a standard output that cannot be written. Nothing more is written to it: Python would try again at its
+    end, and end with a code of its own."""
+    try:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    except OSError:
+        pass
+    kind = OutOfResources if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG) else HairbakeError
+    return kind(f"standard output cannot be written: {error.strerror or error}")
+
+
+def print_line(text: str) -> None:
+    try:
+        print(text, flush=True)
+    except OSError as error:
+        raise output_failure(error) from error
 
 
 class Display:
@@ -40,7 +62,7 @@ class Display:
             print(f"\r[{bar}] {100 * fraction:3.0f} %  {stage}\033[K", end="", file=sys.stderr, flush=True)
 
     def event(self, event: str, **facts: Any) -> None:
-        print(json.dumps({"event": event, **facts}), flush=True)
+        print_line(json.dumps({"event": event, **facts}))
 
     def line(self, text: str, event: str, **facts: Any) -> None:
         """Prints `text`, or the event in the mode json."""
@@ -49,12 +71,12 @@ class Display:
         if self.json:
             self.event(event, **facts)
         else:
-            print(text, flush=True)
+            print_line(text)
 
 
 def move_deprecated(request: Dict[str, Any], source: str) -> None:
     """Moves fields from the places of the first version to their own. Prints a warning for each."""
-    old = request.get("irradiance")
+    old = request.get("irradiance") or {}
     for name in [name for name in MOVED if isinstance(old, dict) and name in old]:
         *blocks, last = MOVED[name].split(".")
         block = request
@@ -74,7 +96,9 @@ def set_field(request: Dict[str, Any], setting: str) -> None:
     try:
         parsed = json.loads(value)
     except (ValueError, RecursionError):
-        parsed = value
+        parsed = float(value) if NUMBER.fullmatch(value) else value
+    if isinstance(parsed, float) and parsed.is_integer():
+        parsed = int(parsed)  # the service takes no 7.0 for a whole number
     first, _, name = path.partition(".")
     if first == "irradiance" and name in MOVED:
         print(f"hairbake: warning: {path} is deprecated: the field is now {MOVED[name]}", file=sys.stderr)
@@ -93,8 +117,10 @@ def make_request(arguments: Arguments) -> Dict[str, Any]:
     if arguments.request:
         try:
             request = json.loads(Path(arguments.request).read_text(encoding="utf-8"))
-        except (OSError, ValueError, RecursionError) as error:
-            raise HairbakeError(f"{arguments.request}: {error}", "request") from error
+        except OSError as error:
+            raise HairbakeError(words_of(error, arguments.request), "request") from error
+        except (ValueError, RecursionError) as error:
+            raise HairbakeError(f"{arguments.request} is not JSON: {error}", "request") from error
         if not isinstance(request, dict):
             raise UsageError(f"{arguments.request} is not a JSON object", "request")
         move_deprecated(request, arguments.request)
@@ -112,8 +138,10 @@ def short_name(hair: str) -> str:
     return hair[7:19] if hair.startswith("sha256:") else Path(hair[5:] if hair.startswith("name:") else hair).stem
 
 
-def tell_ended(client: Client, display: Display, bakes: List[Bake], folder_of: Callable[[str], Optional[Path]]) -> None:
-    """Fetches the bakes that are done. Prints one line for each bake. Raises if some are not done."""
+def tell_ended(client: Client, display: Display, bakes: List[Bake], folder_of: Callable[[str], Optional[Path]],
+               inputs: Optional[Dict[str, str]] = None) -> None:
+    """Fetches the bakes that are done, into folders without the `inputs`. Prints one line for each bake. Raises if some
+    are not done."""
     lost = [bake for bake in bakes if bake.state != "done"]
     for bake in bakes:
         reason = client.with_paths(bake.message)
@@ -121,6 +149,7 @@ def tell_ended(client: Client, display: Display, bakes: List[Bake], folder_of: C
         if bake.state != "done":
             display.line(f"{bake.id} {bake.state} {reason}".rstrip(), bake.state, id=bake.id, message=reason)
         elif folder:
+            check_outside(folder, inputs or {})
             result = client.fetch(bake, folder)
             display.line(f"{bake.id} done; {folder}: {result.received} bytes received", "done", id=bake.id,
                          folder=str(folder), received_bytes=result.received)
@@ -156,8 +185,12 @@ def submit(client: Client, arguments: Arguments, display: Display) -> None:
         raise UsageError("two results would be fetched into the same folder", "fetch")
     targets = [Path(arguments.fetch, name) if len(hairs) > 1 else Path(arguments.fetch)
                for name in names or [""]] if arguments.fetch else []
+    files = {field: request[field] for field in ("environment", "occluder", "receiver") if request.get(field)}
     for target in targets:
         check_result_folder(target)
+        for file in filter(None, hairs):
+            check_outside(target, {"hair": file, **files, **({"--request": arguments.request} if arguments.request else {})})
+        prove_writable(target)
     bakes = [client.submit(hair, priority=arguments.priority, **request) for hair in hairs]
     for hair, bake in zip(hairs, bakes):
         if not (arguments.wait or targets) or display.json:
@@ -218,6 +251,8 @@ def rebake(client: Client, arguments: Arguments, display: Display) -> None:
             which.update({block: dict(json.loads(text))} if text else {})
         except (ValueError, TypeError, RecursionError) as error:
             raise UsageError(f"{block} is {text}; allowed is a JSON object", block) from error
+    if arguments.fetch:
+        prove_writable(Path(arguments.fetch, "any-bake"))
     if arguments.dry_run:
         forecast = client.rebake_forecast(arguments.environment, **which)
         return display.line(json.dumps(forecast), "forecast", **forecast)
@@ -227,12 +262,14 @@ def rebake(client: Client, arguments: Arguments, display: Display) -> None:
         display.line(f"{batch.id} {batch.bakes} bakes", "submitted", id=batch.id, bakes=batch.bakes)
     if waiting:
         ended = wait_for(arguments, ["--batch", batch.id], lambda: client.wait_batch(batch))
-        tell_ended(client, display, ended, lambda bake: Path(arguments.fetch, bake) if arguments.fetch else None)
+        tell_ended(client, display, ended, lambda bake: Path(arguments.fetch, bake) if arguments.fetch else None,
+                   {"environment": arguments.environment, **{f"model {model}": model for model in arguments.model or ()}})
 
 
 def upload(client: Client, arguments: Arguments, display: Display) -> None:
     if arguments.name and (len(arguments.file) != 1 or not arguments.kind):
         raise UsageError("--name needs exactly one file and --as", "name")
+    check_files({f"file {file}": file for file in arguments.file})
     for file in arguments.file:
         reference = client.upload(file, arguments.kind, arguments.name, arguments.note)
         display.line(f"{reference} {file}", "stored", file=file, reference=reference)
@@ -250,34 +287,45 @@ def delete(client: Client, arguments: Arguments, display: Display) -> None:
         display.line(f"{reference} deleted", "deleted", reference=reference)
 
 
-def connection_options() -> argparse.ArgumentParser:
-    common = argparse.ArgumentParser(add_help=False)
+class Parser(argparse.ArgumentParser):
+    """argparse passes over a help that cannot be written."""
+
+    def print_help(self, file: Any = None) -> None:
+        if file:
+            super().print_help(file)
+        else:
+            print_line(self.format_help().rstrip())
+
+
+def connection_options() -> Parser:
+    common = Parser(add_help=False)
     common.add_argument("--server", default=os.environ.get("HAIRBAKE_SERVER"),
                         help="http://HOST:PORT (HAIRBAKE_SERVER)")
     common.add_argument("--token-file", default=os.environ.get("HAIRBAKE_TOKEN_FILE"),
                         help="file with the token (HAIRBAKE_TOKEN_FILE)")
     common.add_argument("--ca-file", help="certificates (PEM) to trust instead of the system's")
     common.add_argument("--patience", type=float, default=120, help="seconds of retries; default 120")
-    common.add_argument("--progress", choices=("auto", "json", "none"), default="auto")
+    common.add_argument("--progress", choices=("auto", "json", "none"), default="auto",
+                        help="a bar on a terminal, JSON lines on standard output, or nothing; default auto")
     return common
 
 
-def priority_options() -> argparse.ArgumentParser:
-    priority = argparse.ArgumentParser(add_help=False)
-    priority.add_argument("--priority", type=int, default=0, help="-10 to 10: higher ones are baked first")
+def priority_options() -> Parser:
+    priority = Parser(add_help=False)
+    priority.add_argument("--priority", type=int, default=0, help="-10 to 10: higher ones are baked first; default 0")
     priority.add_argument("--wait", action="store_true", help="wait until the bakes have ended")
     priority.add_argument("--fetch", metavar="DIR",
                           help="wait, then fetch; several bakes: each into its own folder in DIR")
     return priority
 
 
-def parser() -> argparse.ArgumentParser:
+def parser() -> Parser:
     common, priority = connection_options(), priority_options()
-    main_parser = argparse.ArgumentParser(prog="python3 -m hairbake", description=__doc__, epilog=EPILOG)
+    main_parser = Parser(prog="python3 -m hairbake", description=__doc__, epilog=EPILOG)
     commands = main_parser.add_subparsers(dest="command", required=True)
 
     def command(run: Callable[[Client, Arguments, Display], None], words: str,
-                *parents: argparse.ArgumentParser) -> argparse.ArgumentParser:
+                *parents: Parser) -> Parser:
         made = commands.add_parser(run.__name__, help=words, description=words, parents=[common, *parents],
                                    epilog=EPILOG)
         made.set_defaults(run=run)
@@ -332,10 +380,35 @@ def interrupt(*_: object) -> None:
     raise KeyboardInterrupt
 
 
+def parse(words: Optional[List[str]]) -> Arguments:
+    main_parser = parser()
+    arguments, left = main_parser.parse_known_args(words)
+    if not left:
+        return arguments
+    unknown = next((word for word in left if word.startswith("-")), left[0])
+    commands = next(action for action in main_parser._actions if isinstance(action, argparse._SubParsersAction))
+    known = list(commands.choices[arguments.command]._option_string_actions)
+    near = difflib.get_close_matches(unknown.partition("=")[0], known, 1)
+    hint = f" (did you mean {near[0]}?)" if near else ""
+    what = "option" if unknown.startswith("-") else "argument"
+    main_parser.error(f"{arguments.command} has no {what} {unknown}{hint}")
+
+
 def main(words: Optional[List[str]] = None) -> int:
-    arguments = parser().parse_args(words)
+    """Runs the command. Returns its exit code."""
+    try:
+        arguments = parse(words)
+    except HairbakeError as error:  # of the help
+        print(f"hairbake: error: {error}", file=sys.stderr)
+        return error.exit_code
+    return run(arguments)
+
+
+def run(arguments: Arguments) -> int:
     display = Display(arguments.progress)
-    signal.signal(signal.SIGTERM, interrupt)
+    for name in ("SIGTERM", "SIGHUP"):  # SIGHUP stays ignored where it is (nohup)
+        if hasattr(signal, name) and signal.getsignal(getattr(signal, name)) != signal.SIG_IGN:
+            signal.signal(getattr(signal, name), interrupt)
     try:
         if not arguments.server:
             raise UsageError("--server or HAIRBAKE_SERVER is needed", "server")
@@ -344,12 +417,15 @@ def main(words: Optional[List[str]] = None) -> int:
         arguments.run(client, arguments, display)
         return 0
     except HairbakeError as error:
-        if display.json:
-            display.event("error", kind=error.kind, field=error.field, message=str(error))
         print(f"hairbake: error: {error}", file=sys.stderr)
+        if display.json:
+            try:
+                display.event("error", kind=error.kind, field=error.field, message=str(error))
+            except HairbakeError:
+                pass  # of the output itself: the first error counts
         return error.exit_code
     except OSError as error:
-        print(f"hairbake: error: {error}", file=sys.stderr)
+        print(f"hairbake: error: {words_of(error, error.filename or 'the system refuses')}", file=sys.stderr)
         return HairbakeError.exit_code
     except KeyboardInterrupt:
         return 5

@@ -12,7 +12,7 @@ from typing import Any, Callable, Dict, Iterable, List, Mapping, NamedTuple, Opt
 from ._errors import BakeCancelled, BakeFailed, HairbakeError, Refused, UsageError, plain
 from ._fetch import Result, fetch_result
 from ._http import Http, Json, identifier
-from ._upload import send_if_lacking
+from ._upload import check_file, send_if_lacking
 
 PathLike = Union[str, "os.PathLike[str]"]
 Progress = Callable[[str, float], None]  #: stage ("upload", "bake", "fetch") and its fraction
@@ -70,6 +70,14 @@ def read_token(file: PathLike) -> str:
     if not re.fullmatch(r"[!-~]{1,4096}", token):
         raise HairbakeError(f"{path} is not a token: one word of printable characters", "token-file")
     return token
+
+
+def check_files(inputs: Mapping[str, PathLike]) -> None:
+    """Checks every input (by the name of its field) that is no reference, before any of them is sent. Raises
+    HairbakeError."""
+    for field, value in inputs.items():
+        if not REFERENCE.match(os.fspath(value)):
+            check_file(Path(value), field)
 
 
 def _bake(view: Any) -> Bake:
@@ -149,6 +157,7 @@ class Client:
         irradiance={...}, outputs=[...]."""
         request: Json = {**fields, "priority": priority}
         inputs = {"hair": hair, "environment": environment, "occluder": occluder, "receiver": receiver}
+        check_files({field: value for field, value in inputs.items() if value is not None})
         for field, value in inputs.items():
             if value is not None:
                 request[field] = self._reference(value)
@@ -277,6 +286,8 @@ class Client:
     def _rebake(self, query: str, environment: PathLike, bakes: Optional[Sequence[BakeOrId]],
                 replaces: Optional[PathLike], name: Optional[str], models: Optional[Sequence[PathLike]],
                 priority: int, blocks: Mapping[str, Mapping[str, Any]]) -> Json:
+        check_files({"environment": environment, **({"replaces": replaces} if replaces is not None else {}),
+                     **{f"models[{i}]": model for i, model in enumerate(models or ())}})
         body: Json = {"environment": self._reference(environment), "priority": priority}
         if bakes is not None:
             body["bakes"] = [_id(bake) for bake in bakes]

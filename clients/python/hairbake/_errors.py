@@ -21,6 +21,12 @@ class UsageError(HairbakeError):
     exit_code, kind = 2, "usage"
 
 
+class OutOfResources(HairbakeError):
+    """The disk is full."""
+
+    exit_code, kind = 4, "out of resources"
+
+
 class Unreachable(HairbakeError):
     """No answer within the client's patience, or a certificate that is not trusted."""
 
@@ -54,6 +60,11 @@ class BakeCancelled(HairbakeError):
     """Somebody cancelled the bake on the server."""
 
     exit_code, kind = 9, "bake cancelled"
+
+
+def words_of(error: OSError, name: object) -> str:
+    """The system's reason, with the name of the file as it was given."""
+    return f"{name}: {error.strerror or error}"
 
 
 def plain(text: object) -> str:

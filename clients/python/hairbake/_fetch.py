@@ -8,10 +8,10 @@ import re
 import shutil
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, BinaryIO, Callable, Dict, Iterator, List, NamedTuple, Optional
+from typing import Any, BinaryIO, Callable, Dict, Iterator, List, Mapping, NamedTuple, Optional
 
 from ._arrays import Array, read_arrays
-from ._errors import ConnectionLost, HairbakeError, Refused, UsageError, plain
+from ._errors import ConnectionLost, HairbakeError, Refused, UsageError, plain, words_of
 from ._http import Answer, Http
 from ._upload import digest_of_file
 
@@ -77,6 +77,30 @@ def check_result_folder(folder: Path) -> None:
         raise UsageError(f"{folder} holds files but no manifest.json of hairbake", "out") from error
     if there - known:
         raise UsageError(f"{folder} holds {sorted(there - known)[0]}, which its manifest.json does not list", "out")
+
+
+def check_outside(folder: Path, inputs: Mapping[str, str]) -> None:
+    """Raises UsageError for an input file (by the name of its field) in `folder`, whose content a fetch replaces. Inputs
+    that are no files here are passed over."""
+    inside = folder.resolve()
+    for field, value in inputs.items():
+        path = Path(value)
+        if path.exists() and any(inside in (place, *place.parents) for place in (path.resolve(), path.parent.resolve())):
+            raise UsageError(f"{field} is {path}, which lies in the result folder {folder}: the result would delete it; "
+                             "give another folder, or copy the input elsewhere", field)
+
+
+def prove_writable(folder: Path) -> None:
+    """Makes the hidden folder of a fetch, with the parents that are missing, and removes what it made. Raises
+    HairbakeError if results cannot be written there."""
+    made = [parent for parent in Path(os.path.abspath(folder)).parents if not parent.exists()]
+    try:
+        with part_folder(Path(os.path.abspath(folder))):
+            pass
+        for parent in made:
+            parent.rmdir()
+    except OSError as error:
+        raise HairbakeError(words_of(error, folder), "out") from error
 
 
 @contextmanager

@@ -5,10 +5,11 @@ import base64
 import hashlib
 import os
 import re
+import stat
 from pathlib import Path
 from typing import BinaryIO, Callable, Iterator, Optional
 
-from ._errors import ConnectionLost, HairbakeError, Refused, UsageError
+from ._errors import ConnectionLost, HairbakeError, Refused, UsageError, words_of
 from ._http import PIECE, Http, identifier
 
 GONE = (404, 410)
@@ -18,7 +19,7 @@ def open_input(path: Path) -> BinaryIO:
     try:
         return open(path, "rb")
     except OSError as error:  # else it would be taken for an error of the connection
-        raise HairbakeError(f"{path}: {error.strerror or error}") from error
+        raise HairbakeError(words_of(error, path)) from error
 
 
 def digest_of_file(path: Path) -> str:
@@ -142,10 +143,22 @@ class _Upload:
                 self.progress(offset)
 
 
+def check_file(path: Path, field: str = "") -> None:
+    """Raises HairbakeError unless the path is a file that can be opened. `field` is the name of the input."""
+    try:
+        mode = path.stat().st_mode
+        if stat.S_ISDIR(mode):
+            raise UsageError(f"{field + ': ' if field else ''}{path} is a folder; the service takes single files", field)
+        if not stat.S_ISREG(mode):
+            raise HairbakeError(f"{path}: this is not a regular file", field)
+    except OSError as error:
+        raise HairbakeError(words_of(error, path), field) from error
+    open_input(path).close()
+
+
 def send_if_lacking(http: Http, path: Path, progress: Callable[[int], None]) -> str:
     """Sends the file if the server lacks it. Returns "sha256:DIGEST". Raises HairbakeError."""
-    if path.is_dir():
-        raise UsageError(f"{path} is a folder; the service takes single files")
+    check_file(path)
     digest = digest_of_file(path)
     if not is_stored(http, digest):
         _Upload(http, path, digest, progress).run()

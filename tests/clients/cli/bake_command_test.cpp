@@ -131,7 +131,7 @@ TEST(BakeCommand, UsageErrorsEndWithTwoAndNameTheFieldAndWhatIsAllowed) {
     const Workshop workshop;
     const std::string both = "bake" + workshop.hair() + workshop.out();
     const std::tuple<std::string, std::string> cases[] = {
-        {"", "subcommand"},
+        {"", "no command is given"},
         {"bake", "--out"},
         {"bake" + workshop.out(), "--hair"},
         {both + " --no-such-flag", "--no-such-flag"},

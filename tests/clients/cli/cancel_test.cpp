@@ -14,10 +14,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Whether hairbake runs there and has blocked SIGINT and SIGTERM, and these alone: from then on a signal is seen to.
+/// Whether hairbake runs there and has blocked SIGINT, SIGTERM and, unless ignored, SIGHUP, and these alone: from then on a signal is seen to.
 /// Before that it ends the program as it ends any other; a library that starts up blocks all signals for a moment.
-bool is_ready(pid_t child) {
-    constexpr unsigned long long blocked = (1ull << (SIGINT - 1)) | (1ull << (SIGTERM - 1));
+bool is_ready(pid_t child, bool without_hangup) {
+    const unsigned long long blocked =
+        (1ull << (SIGINT - 1)) | (1ull << (SIGTERM - 1)) | (without_hangup ? 0 : 1ull << (SIGHUP - 1));
     std::ifstream status("/proc/" + std::to_string(child) + "/status");
     std::string word, name;
     status >> word >> name;
@@ -27,15 +28,16 @@ bool is_ready(pid_t child) {
 }
 
 /// Starts the program with its output thrown away and waits until it is ready.
-pid_t start(const std::string& arguments, bool ignore_sigint = false) {
+pid_t start(const std::string& arguments, int ignored = 0) {
     const std::string command = "exec " + shell_word(HAIRBAKE_PROGRAM) + " " + arguments + " >/dev/null 2>&1";
     const pid_t child = ::fork();
     if (child == 0) {
-        if (ignore_sigint) ::signal(SIGINT, SIG_IGN);
+        ::signal(SIGHUP, SIG_DFL);  // the tests may run under nohup
+        if (ignored) ::signal(ignored, SIG_IGN);
         ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
         ::_exit(127);
     }
-    while (!is_ready(child)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    while (!is_ready(child, ignored == SIGHUP)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     return child;
 }
 
@@ -74,7 +76,8 @@ TEST_P(Cancel, EndsTheBakeSoonWithFiveAndLeavesNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Signals, Cancel,
-                         testing::Values(std::pair(SIGINT, 0), std::pair(SIGINT, 700), std::pair(SIGTERM, 700)));
+                         testing::Values(std::pair(SIGINT, 0), std::pair(SIGINT, 700), std::pair(SIGTERM, 700),
+                                         std::pair(SIGHUP, 700)));
 
 TEST(CancelWhileWriting, LeavesTheEarlierResultAlone) {
     const Workshop workshop;
@@ -93,8 +96,18 @@ TEST(CancelWhileWriting, LeavesTheEarlierResultAlone) {
 
 TEST(CancelIgnoredSignal, AnIgnoredSigintOfABackgroundJobStillStopsTheBake) {
     const Workshop workshop;
-    const pid_t child = start("bake" + workshop.hair() + workshop.out() + traced, true);
+    const pid_t child = start("bake" + workshop.hair() + workshop.out() + traced, SIGINT);
     EXPECT_EQ(stop(child, SIGINT).exit_code, 5);
+}
+
+TEST(CancelIgnoredSignal, AnIgnoredSighupOfNohupDoesNotStopTheBake) {
+    const Workshop workshop;
+    ASSERT_EQ(hairbake("sample " + workshop.path("samples") + " --vertices 300000 --map-width 64").exit_code, 0);
+    const pid_t child = start("bake" + workshop.hair() + workshop.out() + traced, SIGHUP);
+    ::kill(child, SIGHUP);
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));  // ten times as long as the program looks for signals
+    EXPECT_EQ(::waitpid(child, nullptr, WNOHANG), 0);
+    EXPECT_EQ(stop(child, SIGTERM).exit_code, 5);
 }
 
 TEST(CancelOverdue, WorkThatDoesNotListenIsEndedAllTheSame) {

@@ -126,13 +126,19 @@ class Jobs:
         hair = self.shop.write("large.hair", hair_bytes(strands=2000, points=60))
         slow = [word for setting in ("transmittance.method=trace", "transmittance.directions=4096",
                                      "transmittance.direction_set=random") for word in ("--set", setting)]
+        for number in (signal.SIGINT, signal.SIGHUP):
+            with self.subTest(number):
+                self.interrupt(daemon, hair, slow, number)
+
+    def interrupt(self, daemon, hair, slow, number):
+        signal.signal(signal.SIGHUP, signal.SIG_DFL)  # the tests may run under nohup
         with Proxy(daemon) as proxy:
             self.shop.write("our certificates.pem", b"")  # not read for http
             process = self.shop.start("submit", "--hair", hair, *slow, "--wait", "--ca-file", "our certificates.pem",
                                       url=proxy.url)
             until(lambda: any(head.startswith("GET /v1/bakes/") for head in proxy.heads), "a poll")
             bake = daemon.ask("GET", "/v1/bakes").json["bakes"][0]["id"]
-            process.send_signal(signal.SIGINT)
+            process.send_signal(number)
             done = self.shop.end(process)
         self.assertEqual(done.code, 5, done)
         for command in ("wait", "cancel"):
@@ -253,6 +259,64 @@ class Refusals:
         done = self.run_failing(2, "submit", "--hair", self.hair, *QUICK, "--fetch", "mine", url=daemon.url)
         self.assertIn("mine", done.err)
         self.assertEqual(self.shop.files("mine"), {"diary.txt": b"dear diary"})
+
+    def test_what_can_be_known_is_said_before_the_server_is_asked(self):
+        """The misspelled second input, and its relatives: nothing answers at this address."""
+        with socket.create_server(("127.0.0.1", 0)) as free:
+            url = f"http://127.0.0.1:{free.getsockname()[1]}"
+        (self.shop.path / "mine").mkdir()
+        self.shop.write("mine/diary.txt", b"dear diary")
+        os.mkfifo(self.shop.path / "pipe")
+        for code, words, said in (
+                (3, ["submit", "--hair", self.hair, "--env", "skyy.hdr"], "skyy.hdr"),
+                (3, ["submit", "--hair", self.hair, "--occluder", "none.obj"], "none.obj"),
+                (3, ["rebake", "--env", self.sky, "--model", self.hair, "--model", "none.hair"], "none.hair"),
+                (3, ["upload", self.hair, "none.hdr"], "none.hdr"),
+                (3, ["submit", "--hair", "pipe"], "pipe"),
+                (3, ["submit", "--hair", self.hair, "--fetch", "/proc/hairbake/out"], "/proc/hairbake/out"),
+                (3, ["fetch", "0" * 64, "--out", "/proc/hairbake/out"], "/proc/hairbake/out"),
+                (3, ["rebake", "--env", self.sky, "--name", "a", "--fetch", "/proc/hairbake"], "/proc/hairbake"),
+                (2, ["fetch", "0" * 64, "--out", "mine"], "mine")):
+            with self.subTest(words):
+                self.assertIn(said, self.run_failing(code, *words, "--patience", "0", url=url).err)
+        self.assertEqual(self.shop.names(), ["groom.hair", "mine", "pipe", "sky.hdr"])
+
+    def test_an_input_in_the_folder_of_the_result_is_never_deleted(self):
+        daemon = self.daemon()
+        self.run_ok("submit", "--hair", self.hair, *QUICK[:-1], "npy,hair", "--fetch", "out", url=daemon.url)
+        inside = str(self.shop.path / "out/transmittance.hair")
+        os.symlink(inside, self.shop.path / "link.hair")
+        for hair in (inside, "out/transmittance.hair", "link.hair"):
+            with self.subTest(hair):
+                done = self.run_failing(2, "submit", "--hair", hair, *QUICK, "--fetch", "out", url=daemon.url)
+                self.assertIn("lies in the result folder", done.err)
+        self.assertIn("transmittance.hair", self.shop.files("out"))
+        self.run_ok("submit", "--hair", inside, *QUICK, "--fetch", "other", url=daemon.url)
+
+    def test_output_that_cannot_be_written_is_an_error(self):
+        daemon = self.daemon()
+        bake = first_word(self.run_ok("submit", "--hair", self.hair, *QUICK, "--wait", url=daemon.url).out)
+        for words in (["status"], ["status", bake, "--progress", "json"], ["wait", bake], ["wait", bake, "--progress", "json"],
+                      ["submit", "--hair", self.hair, *QUICK], ["upload", self.hair], ["--help"], ["wait", "--help"],
+                      ["rebake", "--env", self.sky, "--bake", bake, "--dry-run"], ["fetch", bake, "--out", "out"]):
+            server = [] if "--help" in words else ["--server", daemon.url]
+            with self.subTest(words), open("/dev/full", "w") as full:
+                done = subprocess.run([*self.command, *words, *server], cwd=self.shop.path, env=self.shop.environment,
+                                      stdin=subprocess.DEVNULL, stdout=full, stderr=subprocess.PIPE, text=True)
+                self.assertEqual(done.returncode, 4, done)
+                self.assertIn("standard output cannot be written", done.stderr)
+                self.assertNotIn("Exception ignored", done.stderr)
+
+    def test_habits(self):
+        """Numbers as people write them, and unknown options as typed."""
+        daemon = self.daemon()
+        done = self.run_ok("submit", "--hair", self.hair, *QUICK, "--set", "strand.width=.05", "--set",
+                           "transmittance.seed=+7", "--set", "strand.width_scale=1.", "--wait", url=daemon.url)
+        bake = daemon.ask("GET", f"/v1/bakes/{first_word(done.out)}").json
+        self.assertEqual((bake["request"]["strand"]["width"], bake["request"]["transmittance"]["seed"]), (0.05, 7))
+        for words, said in ((["status", "--btach", "x"], "status has no option --btach (did you mean --batch?)"),
+                            (["status", "--progrss=json"], "no option --progrss=json (did you mean --progress?)")):
+            self.assertIn(said, self.run_failing(2, *words, url=daemon.url).err)
 
     def test_a_server_that_is_not_there(self):
         with socket.create_server(("127.0.0.1", 0)) as free:

@@ -144,7 +144,8 @@ TEST(PlannedPhases, FollowTheStagesAndTheirSharesSumToOne) {
         EXPECT_NEAR(sum, 1, 1e-12);
         return list;
     };
-    EXPECT_EQ(names(), (std::vector<std::string>{"read_hair", "transmittance", "reference", "read_environment",
+    // All inputs are read first: a fault in the environment must not be found after minutes of transmittance.
+    EXPECT_EQ(names(), (std::vector<std::string>{"read_hair", "read_environment", "transmittance", "reference",
                                                  "irradiance", "write"}));
     request.transmittance.reference_vertices = 0;
     request.environment.reset();
