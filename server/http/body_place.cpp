@@ -1,6 +1,6 @@
 #include "server/http/body_place.h"
 
-#include "server/jobs/service.h"
+#include "core/base/short_text.h"
 
 namespace hairbake {
 namespace {
@@ -19,7 +19,7 @@ std::string allowed_by(Json schema) {
 
 void BodyPlace::enter(const std::string& name) {
     pointer_ /= name;
-    field_ += (field_.empty() ? "" : ".") + name;
+    field_ += (field_.empty() ? "" : ".") + (name.empty() ? "\"\"" : name);
     schema_ = schema_of_field(schema_, name);
 }
 
@@ -31,8 +31,8 @@ void BodyPlace::enter(std::size_t index) {
 
 std::string BodyPlace::name() const { return field_.empty() ? "the body" : field_; }
 
-void BodyPlace::refuse(const std::string& words) const {
-    throw Refusal(Refused::unprocessable, name() + " " + words, field_).at(pointer_.to_string());
+void BodyPlace::refuse(const std::string& words, Refused why) const {
+    throw Refusal(why, name() + " " + words, field_).at(pointer_.to_string());
 }
 
 void BodyPlace::refuse_value(const std::string& found) const {
@@ -65,10 +65,6 @@ const Json* schema_of_items(const Json* schema) {
     if (!schema) return nullptr;
     const auto items = schema->find("items");
     return items == schema->end() ? nullptr : &*items;
-}
-
-std::string shortened(const std::string& text, std::size_t length) {
-    return text.size() <= length ? text : text.substr(0, length) + "...";
 }
 
 }  // namespace hairbake

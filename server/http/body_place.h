@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "server/jobs/service.h"
+
 namespace hairbake {
 
 /// For one thread. It is entered step by step from the root of the body.
@@ -26,8 +28,8 @@ public:
     [[noreturn]] void refuse_value(const std::string& found) const;
     /// Throws Refusal(unprocessable): "FIELD is not a field; allowed are" with the fields that the place may have.
     [[noreturn]] void refuse_unknown(const std::string& name) const;
-    /// Throws Refusal(unprocessable) with these words after the field.
-    [[noreturn]] void refuse(const std::string& words) const;
+    /// Throws Refusal with these words after the field.
+    [[noreturn]] void refuse(const std::string& words, Refused why = Refused::unprocessable) const;
 
 private:
     std::string name() const;
@@ -43,8 +45,5 @@ bool is_closed(const BodyPlace::Json* schema);
 /// The schema of the object's field or of the list's items. Null when the schema does not name it.
 const BodyPlace::Json* schema_of_field(const BodyPlace::Json* schema, const std::string& name);
 const BodyPlace::Json* schema_of_items(const BodyPlace::Json* schema);
-
-/// The first `length` bytes.
-std::string shortened(const std::string& text, std::size_t length);
 
 }  // namespace hairbake

@@ -1,34 +1,48 @@
 #include "server/http/body_shape.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdio>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string_view>
 #include <vector>
 
-#include "core/base/json_nesting.h"
+#include "core/base/short_text.h"
 #include "server/http/body_place.h"
+#include "server/http/utf8.h"
 #include "server/jobs/service.h"
 
 namespace hairbake {
 namespace {
 
 using Json = BodyPlace::Json;
-constexpr int deepest = 16;  // levels of a request; later parsers recurse no deeper
 constexpr std::size_t longest_lexeme = 32 << 10, longest_error = 300;
 constexpr std::size_t usual_items = 64, usual_length = 4096;  // where the schema has no number
 
-/// Whether a string or number is longer than `most` bytes. The parser would copy it several times.
-bool has_longer_lexeme(std::string_view json, std::size_t most) {
+/// A string, number or word of the text.
+struct Lexeme {
+    std::size_t begin = 0, bytes = 0;
+};
+
+/// The first one of the text for which `is_wanted` holds while it is read. Nothing when there is none.
+std::optional<Lexeme> find_lexeme(std::string_view json,
+                                  const std::function<bool(const Lexeme&, std::size_t at)>& is_wanted) {
     constexpr std::string_view between = "[]{},: \t\r\n\"";
     bool in_string = false;
-    for (std::size_t i = 0, length = 0; i < json.size(); ++i) {
+    Lexeme lexeme;
+    for (std::size_t i = 0; i < json.size(); ++i) {
         const char c = json[i];
-        length = (in_string ? c == '"' : between.find(c) != std::string_view::npos) ? 0 : length + 1;
+        if (in_string ? c == '"' : between.find(c) != std::string_view::npos)
+            lexeme = {c == '"' && !in_string ? i : i + 1, 0};
+        else
+            ++lexeme.bytes;
         if (c == '"') in_string = !in_string;
-        if (in_string && c == '\\') ++i, ++length;  // and the character that it escapes
-        if (length > most) return true;
+        if (in_string && c == '\\') ++i, ++lexeme.bytes;  // and the character that it escapes
+        if (is_wanted(lexeme, i)) return lexeme;
     }
-    return false;
+    return std::nullopt;
 }
 
 /// A number of the schema, such as maxItems.
@@ -56,7 +70,8 @@ const Json* with_type(const Json* schema, std::string_view type) {
 /// Receives the parser's events.
 class Shape : public nlohmann::json_sax<Json> {
 public:
-    explicit Shape(const Json& schema) : root_(schema) {}
+    /// Of a text that is cut after `bytes` bytes, before a value or a name.
+    explicit Shape(const Json& schema, std::size_t bytes = std::string::npos) : root_(schema), bytes_(bytes) {}
 
     bool null() override { return scalar({"null"}, Json()); }
     bool boolean(bool value) override { return scalar({"boolean"}, value); }
@@ -90,12 +105,23 @@ public:
         if (object.names.size() == usual_items)
             place_of_level().refuse("has more than " + std::to_string(usual_items) + " fields");
         object.names.push_back(name);
+        object.has_value = false;
         return true;
     }
 
-    bool parse_error(std::size_t, const std::string&, const Json::exception& error) override {
+    bool parse_error(std::size_t position, const std::string&, const Json::exception& error) override {
+        if (position > bytes_) return false;  // the cut, and no error before it
         throw Refusal(Refused::malformed, "the body is not JSON: " + shortened(error.what(), longest_error));
     }
+
+    /// The place of the value before which the text was cut. Before a name it is that of the object.
+    BodyPlace next_place() const {
+        if (levels_.empty()) return BodyPlace(root_);
+        BodyPlace next = walk(is_name_next() || levels_.back().is_list ? levels_.size() - 1 : levels_.size());
+        if (levels_.back().is_list) next.enter(levels_.back().count);
+        return next;
+    }
+    bool is_name_next() const { return !levels_.empty() && !levels_.back().is_list && levels_.back().has_value; }
 
 private:
     /// An open list or object.
@@ -105,12 +131,14 @@ private:
         const Json* inner = nullptr;     ///< of the present item or field
         std::size_t count = 0;           ///< items
         std::vector<std::string> names;  ///< fields; the last is the present one
+        bool has_value = true;           ///< the present field, or there is none
     };
 
     /// Counts the value that begins; returns its schema.
     const Json* begin_value() {
         if (levels_.empty()) return &root_;
         Level& level = levels_.back();
+        level.has_value = true;
         if (!level.is_list) return level.inner;
         if (level.count == bound(level.schema, "maxItems", usual_items))
             place_of_level().refuse("is a list of more than " + std::to_string(level.count) +
@@ -160,16 +188,50 @@ private:
     }
 
     const Json& root_;
+    const std::size_t bytes_;
     std::vector<Level> levels_;
 };
+
+/// The place of a string, number or name, and the beginning of a sentence about it.
+struct Found {
+    BodyPlace place;
+    std::string begin;
+};
+
+/// Of the one that begins at `at`.
+/// Throws Refusal for an error before it.
+Found found_at(const std::string& text, std::size_t at, const Json& schema) {
+    Shape before(schema, at);
+    Json::sax_parse(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), &before);
+    return {before.next_place(), before.is_name_next() ? "has a field whose name is " : "is "};
+}
+
+void check_encoding(const std::string& text, const Json& schema) {
+    const auto wrong = first_not_utf8(text);
+    if (!wrong) return;
+    const auto lexeme = find_lexeme(text, [&](const Lexeme&, std::size_t at) { return at >= *wrong; });
+    const Found found = found_at(text, std::min(lexeme ? lexeme->begin : *wrong, *wrong), schema);
+    char byte[8];
+    std::snprintf(byte, sizeof byte, "0x%02x", static_cast<unsigned char>(text[*wrong]));
+    found.place.refuse(found.begin + "no UTF-8: the byte " + byte + " at byte " + std::to_string(*wrong) +
+                           " of the body begins no whole character; allowed is JSON in UTF-8",
+                       Refused::malformed);
+}
+
+void check_lengths(const std::string& text, const Json& schema) {
+    const auto longer = find_lexeme(text, [](const Lexeme& l, std::size_t) { return l.bytes > longest_lexeme; });
+    if (!longer) return;
+    const Found found = found_at(text, longer->begin, schema);
+    found.place.refuse(found.begin + "a text or number of more than " + std::to_string(longest_lexeme) +
+                       " bytes; allowed are up to " +
+                       std::to_string(bound(found.place.schema(), "maxLength", usual_length)) + " characters");
+}
 
 }  // namespace
 
 void check_shape(const std::string& text, const Json& schema) {
-    if (nested_deeper_than(text, deepest)) throw Refusal(Refused::malformed, "the body is nested too deeply");
-    if (has_longer_lexeme(text, longest_lexeme))
-        throw Refusal(Refused::malformed,
-                      "the body has a text or number of more than " + std::to_string(longest_lexeme) + " bytes");
+    check_encoding(text, schema);
+    check_lengths(text, schema);
     Shape shape(schema);
     Json::sax_parse(text, &shape);
 }

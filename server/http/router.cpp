@@ -4,6 +4,7 @@
 #include <optional>
 #include <string_view>
 
+#include "core/base/short_text.h"
 #include "server/http/problem.h"
 #include "server/jobs/service.h"
 
@@ -84,7 +85,8 @@ std::optional<HttpReply> wrong_body(const HttpRequest& request, const Route& rou
         return std::nullopt;
     std::string allowed;
     for (const std::string& known : route.types) allowed += (allowed.empty() ? "" : " or ") + known;
-    return problem(415, "unsupported", "the body is " + type.substr(0, 80) + "; allowed is " + allowed, "Content-Type");
+    return problem(415, "unsupported", "the body is " + shortened(type, 80) + "; allowed is " + allowed,
+                   "Content-Type");
 }
 
 bool needs_place(const HttpRequest& request, const Route& route) {

@@ -1,3 +1,4 @@
+#include "core/base/short_text.h"
 #include "server/http/json_bodies.h"
 #include "server/http/replies.h"
 #include "server/http/routes.h"
@@ -11,7 +12,7 @@ constexpr std::uint64_t request_limit = 1 << 20, rebake_limit = 4 << 20;
 std::string text_in_query(const HttpRequest& request, const std::string& name) {
     const auto found = request.query.find(name);
     if (found == request.query.end()) return {};
-    return found->second.starts_with("sha256:") ? found->second.substr(7) : found->second;
+    return without_prefix(found->second);
 }
 
 HttpReply post_bake(Service& service, JsonBodies& bodies, HttpRequest& request) {
@@ -28,7 +29,7 @@ HttpReply list_bakes(Service& service, HttpRequest& request) {
     filter.state = job_state(state);
     if (!state.empty() && !filter.state)
         throw Refusal(Refused::unprocessable,
-                      "state is " + state.substr(0, 40) + "; allowed is " + list_names(job_states), "state");
+                      "state is " + shortened(state, 40) + "; allowed is " + list_names(job_states), "state");
     filter.model = text_in_query(request, "model");
     filter.environment = text_in_query(request, "environment");
     filter.name = text_in_query(request, "name");

@@ -25,22 +25,27 @@ ReceivedBlob receive_blob(Service& service, const HttpRequest& request, const st
     return {file->digest(), file->bytes(), fresh};
 }
 
-void check_digest(const std::string& digest) {
+/// The digest in the address, with or without "sha256:".
+std::string digest_in(const HttpRequest& request) { return without_prefix(request.parameters.at("sha256")); }
+
+/// The same for the address of a blob.
+/// Throws Refusal(unprocessable).
+std::string blob_digest_in(const HttpRequest& request) {
+    const std::string digest = digest_in(request);
     if (!is_digest(digest))
         throw Refusal(Refused::unprocessable, "a digest is 64 lower-case hexadecimal digits of SHA-256", "sha256");
+    return digest;
 }
 
 HttpReply put_blob(Service& service, HttpRequest& request) {
-    const std::string digest = request.parameters.at("sha256");
-    check_digest(digest);
+    const std::string digest = blob_digest_in(request);
     const ReceivedBlob received = receive_blob(service, request, digest);
     return json_reply(received.fresh ? 201 : 200, Json{{"sha256", digest}, {"bytes", received.bytes}}.dump())
         .with("Location", "/v1/blobs/" + digest);
 }
 
 HttpReply get_blob(Service& service, HttpRequest& request) {
-    const std::string digest = request.parameters.at("sha256");
-    check_digest(digest);
+    const std::string digest = blob_digest_in(request);
     return file_reply(request, service.open_blob(digest), digest, "application/octet-stream");
 }
 
@@ -51,16 +56,14 @@ HttpReply deleted() {
 }
 
 HttpReply delete_blob(Service& service, HttpRequest& request) {
-    const std::string digest = request.parameters.at("sha256");
-    check_digest(digest);
+    const std::string digest = blob_digest_in(request);
     service.remove_blob(digest, flag_in_query(request, "force"));
     return deleted();
 }
 
 /// The digest that the JSON body names.
 std::string digest_in(JsonBodies& bodies, const HttpRequest& request) {
-    const std::string digest = Json::parse(bodies.read(request, "InputRequest").text)["sha256"].get<std::string>();
-    return digest.starts_with("sha256:") ? digest.substr(7) : digest;
+    return without_prefix(Json::parse(bodies.read(request, "InputRequest").text)["sha256"].get<std::string>());
 }
 
 /// A JSON body names the digest of a stored blob; any other body is the file itself.
@@ -68,9 +71,12 @@ HttpReply add_input(Service& service, JsonBodies& bodies, HttpRequest& request, 
     const std::string type = request.header("Content-Type").value_or("");
     std::string digest;
     if (type.starts_with("application/json")) {
-        if (request.content_length.value_or(UINT64_MAX) > json_limit)
+        const std::string allowed = "; allowed is a Content-Length of up to " + std::to_string(json_limit) + " bytes";
+        if (!request.content_length)
+            throw Refusal(Refused::too_large, "the JSON body comes in chunks" + allowed);
+        if (*request.content_length > json_limit)
             throw Refusal(Refused::too_large,
-                          "a JSON body has a length, of at most " + std::to_string(json_limit) + " bytes");
+                          "the JSON body is " + std::to_string(*request.content_length) + " bytes long" + allowed);
         digest = digest_in(bodies, request);
     } else if (type.starts_with("application/octet-stream")) {
         digest = receive_blob(service, request, "").digest;
@@ -85,15 +91,15 @@ HttpReply add_input(Service& service, JsonBodies& bodies, HttpRequest& request, 
 }
 
 HttpReply get_thumbnail(Service& service, HttpRequest& request, const std::string& kind) {
-    const std::string digest = service.catalog().thumbnail(kind, request.parameters.at("sha256"));
+    const std::string digest = service.catalog().thumbnail(kind, digest_in(request));
     return file_reply(request, service.open_blob(digest), digest, "image/png");
 }
 
 HttpReply put_name(Service& service, JsonBodies& bodies, HttpRequest& request) {
     const Json body = Json::parse(bodies.read(request, "NameRequest").text);
-    return json_reply(200,
-                      service.names().put(request.parameters.at("kind"), request.parameters.at("path"),
-                                          body["sha256"].get<std::string>(), body.value("note", ""), request.caller));
+    return json_reply(200, service.names().put(request.parameters.at("kind"), request.parameters.at("path"),
+                                               without_prefix(body["sha256"].get<std::string>()),
+                                               body.value("note", ""), request.caller));
 }
 
 HttpReply get_name(Service& service, HttpRequest& request) {
@@ -123,11 +129,11 @@ HttpReply list_inputs(Service& service, HttpRequest& request, const std::string&
 }
 
 HttpReply get_input(Service& service, HttpRequest& request, const std::string& kind) {
-    return cached_json(request, service.catalog().get(kind, request.parameters.at("sha256")));
+    return cached_json(request, service.catalog().get(kind, digest_in(request)));
 }
 
 HttpReply delete_input(Service& service, HttpRequest& request, const std::string& kind) {
-    service.remove_input(kind, request.parameters.at("sha256"), flag_in_query(request, "force"));
+    service.remove_input(kind, digest_in(request), flag_in_query(request, "force"));
     return deleted();
 }
 

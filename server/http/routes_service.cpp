@@ -1,6 +1,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "core/base/short_text.h"
 #include "core/request/stages.h"
 #include "server/http/openapi.h"
 #include "server/http/problem.h"
@@ -42,7 +43,7 @@ std::int64_t number_in_query(const HttpRequest& request, const std::string& name
     const auto number = read_length(found->second);
     if (!number || *number > static_cast<std::uint64_t>(high) || static_cast<std::int64_t>(*number) < low)
         throw Refusal(Refused::unprocessable,
-                      name + " is \"" + found->second.substr(0, 40) + "\"; allowed is an integer from " +
+                      name + " is \"" + shortened(found->second, 40) + "\"; allowed is an integer from " +
                           std::to_string(low) + " to " + std::to_string(high),
                       name);
     return static_cast<std::int64_t>(*number);
@@ -52,7 +53,7 @@ bool flag_in_query(const HttpRequest& request, const std::string& name) {
     const auto found = request.query.find(name);
     if (found == request.query.end() || found->second == "0") return false;
     if (found->second == "1") return true;
-    throw Refusal(Refused::unprocessable, name + " is \"" + found->second.substr(0, 40) + "\"; allowed are 0 and 1",
+    throw Refusal(Refused::unprocessable, name + " is \"" + shortened(found->second, 40) + "\"; allowed are 0 and 1",
                   name);
 }
 

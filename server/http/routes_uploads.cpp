@@ -71,7 +71,7 @@ HttpReply options(Service& service) {
 HttpReply create(Service& service, HttpRequest& request) {
     const std::uint64_t bytes = length_header(request, "Upload-Length");
     const std::string metadata = request.header("Upload-Metadata").value_or("");
-    const std::string digest = metadata_value(metadata, "sha256");
+    const std::string digest = without_prefix(metadata_value(metadata, "sha256"));
     const UploadState state = service.uploads().create(bytes, digest, metadata, request.caller);
     return tus_reply(201)
         .with("Location", "/v1/uploads/" + state.id)

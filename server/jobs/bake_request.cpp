@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/short_text.h"
 #include "core/request/request_json.h"
 #include "core/request/stages.h"
 #include "server/jobs/names.h"
@@ -46,7 +47,7 @@ Resolved resolve(Sql& sql, const std::string& value, const std::string& kind, co
         resolved.digest = value.substr(7);
     } else {
         throw Refusal(Refused::unprocessable,
-                      field + " is \"" + value.substr(0, 80) +
+                      field + " is \"" + shortened(value, 80) +
                           "\"; allowed is sha256: and 64 hexadecimal digits, or name: and a name",
                       field)
             .at("/" + field);
@@ -81,7 +82,7 @@ Body split_body(const std::string& text) {
     const Json value = *found;
     if (!value.is_number_integer() || value < -10 || value > 10)
         throw Refusal(Refused::unprocessable,
-                      "priority is " + value.dump().substr(0, 40) + "; allowed is an integer from -10 to 10",
+                      "priority is " + shortened(value.dump(), 40) + "; allowed is an integer from -10 to 10",
                       "priority");
     body.erase("priority");
     return {body.dump(-1, ' ', false, Json::error_handler_t::replace), value.get<int>()};

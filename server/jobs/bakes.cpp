@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/digest.h"
+#include "core/base/short_text.h"
 #include "server/jobs/bake_manifest.h"
 #include "server/jobs/page.h"
 #include "server/jobs/queue.h"
@@ -33,7 +34,7 @@ constexpr const char* stage_rows =
 std::vector<SqlRow> stages_of(Sql& sql, const SqlRow& bake) { return sql.rows(stage_rows, {bake.integer(2)}); }
 
 [[noreturn]] void refuse_unknown(const std::string& id) {
-    throw Refusal(Refused::not_found, "there is no bake " + id.substr(0, 64));
+    throw Refusal(Refused::not_found, "there is no bake " + shortened(id, 64));
 }
 
 /// One stage of a bake.
@@ -206,7 +207,7 @@ BakeFile Bakes::file(const std::string& id, const std::string& name) {
         const Json links = file_links(sql, bake);
         const auto found =
             std::find_if(links.begin(), links.end(), [&](const Json& link) { return link["name"] == name; });
-        if (found == links.end()) throw Refusal(Refused::not_found, "the bake has no file " + name.substr(0, 100));
+        if (found == links.end()) throw Refusal(Refused::not_found, "the bake has no file " + shortened(name, 100));
         file.etag = (*found)["sha256"].get<std::string>();
         file.blob = file.etag;
     });

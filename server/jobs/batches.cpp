@@ -7,6 +7,7 @@
 #include <span>
 #include <unordered_set>
 
+#include "core/base/short_text.h"
 #include "core/request/stages.h"
 #include "server/jobs/bake_request.h"
 #include "server/jobs/job_state.h"
@@ -100,12 +101,12 @@ std::vector<std::int64_t> affected(Sql& sql, const Json& body) {
     if (body.contains("bakes")) {
         for (const std::string& id : strings(body, "bakes"))
             if (!found.add(sql.rows(select + "id = ?", {id})))
-                refuse("bakes", "there is no bake " + id.substr(0, 64) + " with a hair model");
+                refuse("bakes", "there is no bake " + shortened(id, 64) + " with a hair model");
     } else if (body.contains("models")) {
         for (const std::string& model : strings(body, "models")) {
             const std::string digest = named_digest(sql, model, "model", "models");
             if (!found.add(sql.rows(wanted + "hair = ? ORDER BY seq DESC LIMIT 1", {digest})))
-                refuse("models", "there is no bake of the model " + model.substr(0, 80));
+                refuse("models", "there is no bake of the model " + shortened(model, 80));
         }
     } else if (body.contains("replaces")) {
         const std::string digest = named_digest(sql, text(body, "replaces"), "environment", "replaces");
@@ -234,7 +235,7 @@ std::string Batches::get(const std::string& id) {
     database_.read([&](Sql& sql) {
         version = database_.version_read();
         const auto rows = sql.rows("SELECT id, request, created FROM batches WHERE id = ?", {id});
-        if (rows.empty()) throw Refusal(Refused::not_found, "there is no batch " + id.substr(0, 64));
+        if (rows.empty()) throw Refusal(Refused::not_found, "there is no batch " + shortened(id, 64));
         answer = {{"id", id}, {"created", time_text(rows[0].number(2))}};
         std::int64_t total = 0;
         Json counts = Json::object();

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/short_text.h"
 #include "server/jobs/page.h"
 #include "server/jobs/runner.h"
 #include "server/jobs/task_follower.h"
@@ -35,7 +36,7 @@ Json entry(const std::string& kind, const SqlRow& row) {
 }
 
 [[noreturn]] void refuse_unknown(const std::string& kind, const std::string& digest) {
-    throw Refusal(Refused::not_found, "there is no " + kind + " " + digest.substr(0, 64));
+    throw Refusal(Refused::not_found, "there is no " + kind + " " + shortened(digest, 64));
 }
 
 [[noreturn]] void refuse_for_now(const std::string& reason) {
@@ -61,7 +62,7 @@ Catalog::Catalog(Database& database, BlobStore& store, Runner& runner)
 
 Catalog::Added Catalog::add(const std::string& kind, const std::string& digest) {
     if (!store_.size_of(digest))
-        throw Refusal(Refused::unprocessable, "sha256:" + digest.substr(0, 64) + " is not stored; send it first",
+        throw Refusal(Refused::unprocessable, "sha256:" + shortened(digest, 64) + " is not stored; send it first",
                       "sha256");
     store_.touch(digest);
     bool known = false;

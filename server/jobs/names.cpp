@@ -4,6 +4,7 @@
 #include <cctype>
 #include <nlohmann/json.hpp>
 
+#include "core/base/short_text.h"
 #include "server/jobs/page.h"
 #include "server/jobs/time_text.h"
 #include "server/store/blob_store.h"
@@ -77,7 +78,7 @@ std::string Names::put(const std::string& kind, const std::string& path, const s
     database_.write([&](Sql& sql) {
         if (!is_digest(sha256) || sql.rows("SELECT 1 FROM blobs WHERE sha256 = ?", {sha256}).empty())
             throw Refusal(Refused::unprocessable,
-                          "sha256 is \"" + sha256.substr(0, 64) + "\"; allowed is the digest of a stored blob",
+                          "sha256 is \"" + shortened(sha256, 64) + "\"; allowed is the digest of a stored blob",
                           "sha256");
         const auto newest =
             sql.rows("SELECT version, sha256 FROM names WHERE kind = ? AND path = ? ORDER BY version DESC LIMIT 1",
@@ -129,7 +130,7 @@ NamedDigest resolve_name(Sql& sql, const std::string& kind, const std::string& n
     if (rows.empty())
         throw Refusal(
             Refused::unprocessable,
-            field + " asks for name:" + name.substr(0, longest_path) + ", which is no name of the kind " + kind, field)
+            field + " asks for name:" + shortened(name, longest_path) + ", which is no name of the kind " + kind, field)
             .at("/" + field);
     return {path, rows[0].text(1), rows[0].integer(0)};
 }

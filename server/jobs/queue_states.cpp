@@ -1,6 +1,7 @@
 // How the states of stages and bakes follow from each other.
 #include <algorithm>
 
+#include "core/base/short_text.h"
 #include "server/jobs/queue.h"
 #include "server/store/blob_store.h"
 #include "server/store/database.h"
@@ -54,7 +55,7 @@ void Queue::release_stage(Sql& sql, const std::string& stage) {
 void Queue::cancel(const std::string& bake) {
     database_.write([&](Sql& sql) {
         const std::optional<JobState> state = state_of_bake(sql, bake);
-        if (!state) throw Refusal(Refused::not_found, "there is no bake " + bake.substr(0, 64));
+        if (!state) throw Refusal(Refused::not_found, "there is no bake " + shortened(bake, 64));
         if (!is_live(*state))
             throw Refusal(Refused::conflict, std::string("the bake is ") + name_of(*state) +
                                                  "; only a queued or running one can be cancelled");

@@ -7,6 +7,7 @@
 #include <cerrno>
 
 #include "core/base/digest.h"
+#include "core/base/short_text.h"
 #include "server/store/blob_store.h"
 #include "server/store/database.h"
 #include "server/store/file_system.h"

@@ -8,6 +8,7 @@
 
 #include "core/base/error_kind_names.h"
 #include "core/base/json_nesting.h"
+#include "core/base/short_text.h"
 
 namespace hairbake {
 namespace {
@@ -22,7 +23,7 @@ std::string text(const Json& object, const char* name) {
     const auto found = object.find(name);
     if (found == object.end() || !found->is_string()) return {};
     const auto& whole = found->get_ref<const std::string&>();
-    return whole.size() <= longest_text ? whole : whole.substr(0, longest_text) + "...";
+    return shortened(whole, longest_text);
 }
 
 }  // namespace

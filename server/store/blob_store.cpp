@@ -10,6 +10,7 @@
 #include <cstdio>
 
 #include "core/base/assert.h"
+#include "core/base/short_text.h"
 #include "server/store/database.h"
 #include "server/store/refusal.h"
 
@@ -19,6 +20,10 @@ namespace fs = std::filesystem;
 bool is_digest(const std::string& text) {
     return text.size() == 64 && std::all_of(text.begin(), text.end(),
                                             [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); });
+}
+
+std::string without_prefix(const std::string& digest) {
+    return digest.starts_with("sha256:") ? digest.substr(7) : digest;
 }
 
 std::string blob_name(const std::string& digest) { return digest.substr(0, 2) + "/" + digest; }
@@ -122,9 +127,8 @@ bool BlobStore::is_sent(const std::string& digest) {
 
 OpenBlob BlobStore::open(const std::string& digest, const OnLoss& on_loss) {
     if (!is_digest(digest) || !size_of(digest))
-        throw Refusal(Refused::not_found, "there is no blob " + digest.substr(0, 64), "sha256");
-    OpenBlob blob{Descriptor(::open(path_of(digest).c_str(), O_RDONLY | O_CLOEXEC)), 0};
-    if (!blob.file && errno == ENOENT) lose_if_missing(digest, on_loss);
+        throw Refusal(Refused::not_found, "there is no blob " + shortened(digest, 64), "sha256");
+    OpenBlob blob{open_blob_file(digest, on_loss), 0};
     const std::optional<FileFacts> facts = facts_of(blob.file.get());
     if (!facts) refuse_for_now(digest);
     blob.bytes = static_cast<std::uint64_t>(facts->bytes);

@@ -26,6 +26,9 @@ class Sql;
 /// Whether `text` is 64 lower-case hexadecimal digits.
 bool is_digest(const std::string& text);
 
+/// The digest without the prefix "sha256:", with which it may be written.
+std::string without_prefix(const std::string& digest);
+
 /// Path of a blob in the folder blobs: "ab/<sha256>".
 std::string blob_name(const std::string& digest);
 

@@ -8,9 +8,11 @@
 #include <thread>
 #include <vector>
 
+#include "core/base/short_text.h"
 #include "server/http/body_budget.h"
 #include "server/http/body_places.h"
 #include "server/http/body_shape.h"
+#include "server/http/utf8.h"
 #include "server/store/refusal.h"
 
 namespace hairbake {
@@ -29,6 +31,11 @@ TEST(BodyPlaces, CountInAllAndForEachAddress) {
     EXPECT_FALSE(places.take("192.0.2.1"));
     held.push_back(places.take(""));  // not forwarded: no address
     EXPECT_FALSE(places.take("192.0.2.3"));
+    EXPECT_EQ(places.refusal("192.0.2.1"),
+              "2 uploads and long bodies are under way from your address; allowed are up to 2 at once ([listen] "
+              "bodies_per_address)");
+    EXPECT_EQ(places.refusal("192.0.2.3"),
+              "4 uploads and long bodies are under way; allowed are up to 4 at once ([listen] bodies)");
     held[0].reset();
     EXPECT_TRUE(places.take("192.0.2.1"));
     EXPECT_TRUE(places.take("192.0.2.1"));  // the first of these is free again
@@ -108,7 +115,52 @@ TEST_F(BodyShape, EndsAtTheFirstErrorAndNamesItsPlace) {
     std::string many = "0";
     for (int i = 0; i < 64; ++i) many += ",0";
     EXPECT_EQ(refused(R"({"list": [[)" + many + "]]}"), "list[0]");  // without maxItems: 64
-    EXPECT_EQ(refused(R"({"text": ")" + std::string(40'000, 'x') + "\"}"), "-");
+}
+
+/// Fault: the refusal named no field. Relatives: a name of a field, an item of a list, the body itself, nesting, and bytes
+/// that are no UTF-8.
+TEST_F(BodyShape, NamesThePlaceOfWhatItDoesNotParse) {
+    const std::string large(40'000, '1');
+    for (const auto& [text, words] :
+         {std::pair("{\"text\": \"" + large + "\"}",
+                    "text is a text or number of more than 32768 bytes; allowed are up to 3"),
+          {"{\"list\": [[1], [2, " + large, "list[1][1] is a text or number of more"},
+          {"{\"text\": null, \"" + large, "the body has a field whose name is a text or number"},
+          {"\"" + large, "the body is a text or number of more"},
+          {"{\"list\": [[[", "list[0][0] is [...]; allowed is"},
+          {std::string("{\"list\": ") + std::string(100'000, '['), "list[0][0] is [...]; allowed is"},
+          {std::string(100'000, '['), "the body is [...]; allowed is"},
+          {"{\"text\": \"a\xc3\"}", "text is no UTF-8: the byte 0xc3 at byte 11 of the body"},
+          {"{\"text\": \"\xe2\x82", "text is no UTF-8: the byte 0xe2 at byte 10"},
+          {"{\"text\": \"\xed\xa0\x80\"}", "text is no UTF-8: the byte 0xed"},
+          {"{\"text\": null, \"\xff\": 1}", "the body has a field whose name is no UTF-8: the byte 0xff"},
+          {"{\"\": 1}", "\"\" is not a field; allowed are choice, either, list, text"},
+          {"{\"other\": \"" + large, "other is not a field"}})  // an earlier error
+        try {
+            check_shape(text, schema);
+            FAIL() << text.substr(0, 80);
+        } catch (const Refusal& refusal) {
+            EXPECT_NE(std::string(refusal.what()).find(words), std::string::npos) << refusal.what();
+        }
+    EXPECT_EQ(refused("{\"text\": \"\xf0\x9f\x98\x80\"}"), "");
+}
+
+TEST(Utf8, FindsTheFirstByteOfWhatIsNoCharacter) {
+    // By the Unicode standard, table 3-7: the first and the last character of each row, and their neighbours.
+    for (const std::string text : {"\x7f", "\xc2\x80", "\xdf\xbf", "\xe0\xa0\x80", "\xed\x9f\xbf", "\xee\x80\x80",
+                                   "\xef\xbf\xbf", "\xf0\x90\x80\x80", "\xf4\x8f\xbf\xbf"})
+        EXPECT_FALSE(first_not_utf8("ab" + text)) << text;
+    for (const std::string text :
+         {"\x80", "\xc1\xbf", "\xc2", "\xc2\x7f", "\xc2\xc0", "\xe0\x9f\xbf", "\xed\xa0\x80", "\xe1\x80",
+          "\xe1\x80\x7f", "\xf0\x8f\xbf\xbf", "\xf4\x90\x80\x80", "\xf5\x80\x80\x80", "\xf1\x80\x80", "\xff"})
+        EXPECT_EQ(first_not_utf8("ab" + text + "\""), 2u) << text;
+}
+
+TEST(ShortText, CutsNoCharacter) {
+    EXPECT_EQ(shortened("aö", 2), "a...");
+    EXPECT_EQ(shortened("aö", 3), "aö");
+    EXPECT_EQ(shortened("aöb", 3), "aö...");
+    EXPECT_EQ(shortened("\xf0\x9f\x98\x80", 3), "...");
 }
 
 }  // namespace
