@@ -55,6 +55,11 @@ void hide(std::string& message, const std::string& folder) {
         message.replace(at, folder.size(), "the store");
 }
 
+/// By the system's text, which the messages of workers and of the store have.
+bool is_full_disk(const Outcome& outcome) {
+    return outcome.message.find(std::generic_category().message(ENOSPC)) != std::string::npos;
+}
+
 std::string log_text(const Outcome& outcome) {
     switch (outcome.end) {
         case End::done:
@@ -99,7 +104,8 @@ void WorkerPool::run_to_the_end(const ClaimedStage& stage) {
         outcome = run(stage);
     } catch (...) {
         outcome = outcome_of_exception();
-        hide(outcome.message, store_.incoming_folder().parent_path().string());
+        if (outcome.end != End::trouble)  // what the machine lacks is for the operator, who needs the path
+            hide(outcome.message, store_.incoming_folder().parent_path().string());
     }
     if (outcome.end == End::died || (outcome.end == End::failed && outcome.kind == ErrorKind::internal))
         outcome = explain_death(std::move(outcome), runner_, store_.incoming_folder(),

@@ -3,12 +3,14 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <sqlite3.h>
 
+#include <cerrno>
 #include <map>
 #include <tuple>
 
 #include "core/base/error.h"
 #include "server/store/schema.h"
 #include "server/store/store_access.h"
+#include "server/store/store_advice.h"
 
 namespace hairbake {
 
@@ -31,13 +33,17 @@ double SqlRow::number(std::size_t column) const {
 
 namespace {
 
-[[noreturn]] void fail(const SQLite::Exception& error) {
+/// `file` is the database's.
+[[noreturn]] void fail(const SQLite::Exception& error, const std::filesystem::path& file) {
     const int code = error.getErrorCode() & 0xff;
+    const std::string name = "the database " + file.string();
     if (code == SQLITE_FULL)
-        throw Error(ErrorKind::out_of_resources, "the disk of the store is full: the database cannot grow");
+        throw Error(ErrorKind::out_of_resources, name + " cannot grow: its disk is full. " + advice_for(file, ENOSPC));
     if (code == SQLITE_READONLY || code == SQLITE_IOERR || code == SQLITE_CANTOPEN)
-        throw Error(ErrorKind::out_of_resources, std::string("the database cannot be written: ") + error.what());
-    const std::string message = std::string("the database: ") + error.what();
+        throw Error(ErrorKind::out_of_resources, name + " cannot be written: " + error.what() +
+                                                     ". Check that its disk has room and can be written, and that the "
+                                                     "daemon's user may write the file and its folder");
+    const std::string message = "the database: " + std::string(error.what());
     if (code == SQLITE_CORRUPT || code == SQLITE_NOTADB) throw SpoiledDatabase(ErrorKind::internal, message);
     throw Error(ErrorKind::internal, message);
 }
@@ -103,7 +109,7 @@ public:
             prepared.reset();
             return changed;
         } catch (const SQLite::Exception& error) {
-            fail(error);
+            fail(error, database.getFilename());
         }
     }
 
@@ -132,7 +138,7 @@ public:
                 if (!take(SqlRow(std::move(row)))) return;
             }
         } catch (const SQLite::Exception& error) {
-            fail(error);
+            fail(error, database.getFilename());
         }
     }
 
@@ -250,7 +256,7 @@ void Database::write(const std::function<void(Sql&)>& body) {
         transaction.commit();
         ++version_;
     } catch (const SQLite::Exception& error) {
-        fail(error);
+        fail(error, writer_->database.getFilename());
     }
 }
 
@@ -273,7 +279,7 @@ void Database::read(const std::function<void(Sql&)>& body) {
         }
         reader_->run("ROLLBACK", {});  // there is nothing to commit
     } catch (const SQLite::Exception& error) {
-        fail(error);
+        fail(error, writer_->database.getFilename());
     }
 }
 

@@ -12,6 +12,7 @@
 
 #include "core/base/error.h"
 #include "server/store/refusal.h"
+#include "server/store/store_advice.h"
 
 namespace hairbake {
 
@@ -20,10 +21,54 @@ void throw_store_error(const std::filesystem::path& file, int error) {
     const bool busy = error == ENOMEM || error == EMFILE || error == ENFILE;
     const bool closed = error == EROFS || error == EACCES || error == EPERM || error == EIO;
     const std::string words = std::generic_category().message(error);
+    const std::string place = " in " + file.parent_path().string() + ": " + words + ". " + advice_for(file, error);
     if (busy) throw Refusal(Refused::busy, "the store is short of memory or descriptors: " + words);
-    if (full) throw Error(ErrorKind::out_of_resources, "the store cannot grow: " + words);
-    if (closed) throw Error(ErrorKind::out_of_resources, "the store cannot be written: " + words);
+    if (full) throw Error(ErrorKind::out_of_resources, "the store cannot grow" + place);
+    if (closed) throw Error(ErrorKind::out_of_resources, "the store cannot be written" + place);
     throw Error(ErrorKind::internal, "the store's " + file.string() + ": " + words);
+}
+
+namespace {
+
+PathKind kind_of_mode(mode_t mode) {
+    if (S_ISREG(mode)) return PathKind::file;
+    return S_ISDIR(mode) ? PathKind::folder : PathKind::other;
+}
+
+PathKind kind_of_error(int error) {
+    if (error == ENOENT) return PathKind::nothing;
+    return error == ELOOP ? PathKind::other : PathKind::unknown;
+}
+
+}  // namespace
+
+PathKind kind_of_path(const std::filesystem::path& path) {
+    struct stat facts {};
+    return ::stat(path.c_str(), &facts) == 0 ? kind_of_mode(facts.st_mode) : kind_of_error(errno);
+}
+
+bool is_plain_file(const std::filesystem::path& path) {
+    struct stat facts {};
+    return ::lstat(path.c_str(), &facts) == 0 && S_ISREG(facts.st_mode);
+}
+
+std::string words_for_path(const std::filesystem::path& path) {
+    struct stat facts {};
+    if (::lstat(path.c_str(), &facts) != 0) return "nothing";
+    switch (facts.st_mode & S_IFMT) {
+        case S_IFREG:
+            return "a file";
+        case S_IFDIR:
+            return "a folder";
+        case S_IFIFO:
+            return "a named pipe";
+        case S_IFSOCK:
+            return "a socket";
+        case S_IFLNK:
+            return "a symbolic link";
+        default:
+            return "a device";
+    }
 }
 
 void write_all(int descriptor, std::span<const std::byte> bytes, const std::filesystem::path& file) {

@@ -9,7 +9,7 @@
 
 namespace hairbake {
 
-/// `error` is errno. The message holds the system's text.
+/// `error` is errno. The message holds the folder of the file, the system's text, and what to do.
 /// Throws Refusal(busy) when memory or descriptors are short.
 /// Throws Error(out_of_resources) for a disk that is full or cannot be written, Error(internal) otherwise.
 [[noreturn]] void throw_store_error(const std::filesystem::path& file, int error);

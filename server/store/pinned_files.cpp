@@ -3,8 +3,10 @@
 #include <sys/stat.h>
 
 #include <cerrno>
+#include <system_error>
 
 #include "server/store/refusal.h"
+#include "server/store/store_advice.h"
 
 namespace hairbake {
 
@@ -16,10 +18,14 @@ PinnedFiles::PinnedFiles(const std::vector<std::filesystem::path>& paths) {
 void PinnedFiles::check() const {
     for (const Pin& pin : pins_) {
         struct stat facts {};
-        const bool found = ::stat(pin.path.c_str(), &facts) == 0;
-        if (found && facts.st_dev == pin.device && facts.st_ino == pin.inode) continue;
-        const bool gone = !found && errno == ENOENT;
-        throw Refusal(Refused::busy, pin.path.string() + " was " + (gone ? "moved or deleted" : "replaced") +
+        const int error = ::stat(pin.path.c_str(), &facts) == 0 ? 0 : errno;
+        if (error == 0 && facts.st_dev == pin.device && facts.st_ino == pin.inode) continue;
+        const std::string path = pin.path.string();
+        const bool is_gone = error == ENOENT || error == ENOTDIR;
+        if (error != 0 && !is_gone)
+            throw Refusal(Refused::busy, path + " cannot be reached: " + std::generic_category().message(error) +
+                                             "; nothing is written. " + advice_for(pin.path, error));
+        throw Refusal(Refused::busy, path + " was " + (is_gone ? "moved or deleted" : "replaced") +
                                          " while the daemon works with it; nothing is written. Put the file back that "
                                          "was there before; docs/deployment.md tells how to save a deleted database");
     }

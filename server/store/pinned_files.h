@@ -1,4 +1,4 @@
-// Notices that a file or folder was moved, deleted or replaced while the daemon has it open.
+// Notices that a file or folder was moved, deleted, replaced or closed while the daemon has it open.
 #pragma once
 
 #include <sys/types.h>
@@ -15,7 +15,8 @@ public:
     explicit PinnedFiles(const std::vector<std::filesystem::path>& paths);
 
     /// One stat() a path.
-    /// Throws Refusal(busy), naming the path, when another file or none is at one of them.
+    /// Throws Refusal(busy), naming the path, when another file or none is at one of them, and with the system's reason
+    /// and what to do when the system does not say which file is there.
     void check() const;
 
 private:

@@ -202,9 +202,10 @@ void Room::require_evictable(std::uint64_t excess, std::uint64_t bytes, std::uin
 void Room::require_disk(std::uint64_t bytes, std::uint64_t under_way) const {
     const std::uint64_t free = free_bytes();
     if (free >= limits_.keep_free && free - limits_.keep_free >= bytes) return;
-    const std::string found = "the store's disk has " + std::to_string(free) + " bytes free; needed are " +
-                              std::to_string(bytes) + " for bodies under way, and keep_free_mb keeps " +
-                              std::to_string(limits_.keep_free) + " free: ";
+    const std::string found = "the disk of " + folder_.string() + " has " + std::to_string(free) +
+                              " bytes free; needed are " + std::to_string(bytes) +
+                              " for bodies under way, and keep_free_mb keeps " + std::to_string(limits_.keep_free) +
+                              " free: ";
     if (free + under_way >= limits_.keep_free + bytes)
         throw Refusal(Refused::busy, found + std::to_string(under_way) +
                                          " bytes are of other bodies: try again when they have ended, or make room "

@@ -10,14 +10,15 @@
 
 #include "core/base/error.h"
 #include "server/store/file_system.h"
+#include "server/store/store_advice.h"
 
 namespace hairbake {
 namespace fs = std::filesystem;
 namespace {
 
-std::string advice_for(const fs::path& store, int error) {
-    if (error == EROFS) return "Mount the file system of the store so that it can be written";
+std::string advice_to_start(const fs::path& store, int error) {
     if (error == ENOTDIR || error == EEXIST) return "Let [store] folder name the folder of a store, or an empty one";
+    if (error != EACCES && error != EPERM) return advice_for(store, error);
     const std::string user = std::to_string(::geteuid()), folder = store.string();
     return "This program runs as user " + user + ". If " + folder +
            " is its store, give owner and mode back: `chown -R " + user + " " + folder + "` and `chmod -R u+rwX " +
@@ -27,7 +28,7 @@ std::string advice_for(const fs::path& store, int error) {
 [[noreturn]] void stop(const fs::path& store, const fs::path& path, const char* what, int error) {
     throw Error(ErrorKind::bad_input,
                 path.string() + " cannot be " + what + ": " + std::generic_category().message(error) +
-                    ". Nothing was changed or removed. " + advice_for(store, error),
+                    ". Nothing was changed or removed. " + advice_to_start(store, error),
                 {}, error);
 }
 

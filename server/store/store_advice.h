@@ -1,0 +1,12 @@
+// What a person can do when the system refuses a call for a file of the store.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace hairbake {
+
+/// Sentences without a full stop at the end. `error` is errno of a call for `path`, a file or folder of the store.
+std::string advice_for(const std::filesystem::path& path, int error);
+
+}  // namespace hairbake
