@@ -51,7 +51,10 @@ Json entry(const std::string& kind, const SqlRow& row) {
     throw Refusal(Refused::unprocessable, outcome.message, "sha256");
 }
 
-std::string digest_of_thumbnail(const fs::path& picture) try { return digest_of_file(picture); } catch (const Error&) {
+std::string digest_of_thumbnail(const fs::path& picture) try {
+    if (!is_plain_file(picture)) refuse_for_now("the thumbnail that the worker made is gone or no file");
+    return digest_of_file(picture);
+} catch (const Error&) {
     refuse_for_now("the thumbnail that the worker made is gone");
 }
 

@@ -67,7 +67,7 @@ void Scrub::check(const std::string& digest) {
             digest, [&](Sql& sql) { on_loss_(sql, digest); },
             [this](std::size_t bytes) { pause(static_cast<double>(bytes) / bytes_per_second); });
     } catch (const LostBlob& lost) {
-        spdlog::error("{}; a result is baked again, an input must be sent again", lost.what());
+        spdlog::error("{}", lost.what());
     } catch (const Refusal& refusal) {
         spdlog::warn("{}", refusal.what());
         store_.note_check_failed(digest);

@@ -29,6 +29,14 @@ RunnerSettings runner_settings(const Settings& settings) {
 
 }  // namespace
 
+/// Says what was lost, and which inputs people must send again: nobody can ask the database for them afterwards.
+void log_lost(const LostBlobs& lost) {
+    if (lost.results > 0) spdlog::warn("{} stored results are missing or spoiled", lost.results);
+    if (lost.inputs.empty()) return;
+    spdlog::error("{} inputs are missing or spoiled. They are forgotten and must be sent again:", lost.inputs.size());
+    for (const std::string& input : lost.inputs) spdlog::error("send {} again", input);
+}
+
 /// In the order in which they start; they end in the opposite order.
 struct Service::Parts {
     Parts(const Settings& given, std::unique_ptr<Runner> with)
@@ -74,8 +82,7 @@ struct Service::Parts {
         const std::vector<StartedTask> surviving = surviving_tasks();
         std::set<std::string> spared;
         for (const StartedTask& task : surviving) spared.insert(task.folder);
-        if (const std::size_t lost = store.recover(spared, identity.accepted()))
-            spdlog::warn("{} blobs were lost", lost);
+        log_lost(store.recover(spared, identity.accepted()));
         uploads.recover();
         const Queue::Recovered recovered = queue.recover(surviving);
         if (recovered.lost) spdlog::warn("{} stages lost files; they are baked again", recovered.lost);
@@ -168,7 +175,8 @@ OpenBlob Service::open_blob(const std::string& digest) try {
     return parts_->store.open(digest, [&](Sql& sql) { parts_->queue.blob_lost(sql, digest); });
 } catch (const LostBlob& lost) {
     spdlog::error("{}", lost.what());
-    throw Refusal(Refused::busy, std::string(lost.what()) + "; a result is baked again, an input must be sent again");
+    // Waiting brings back what is baked again. All else is unknown to the next request.
+    throw Refusal(lost.comes_back() ? Refused::busy : Refused::not_found, lost.what());
 }
 
 std::string Service::list_blobs(const std::string& cursor, int limit, bool unneeded) {
@@ -184,7 +192,12 @@ void Service::remove_blob(const std::string& digest, bool force) {
 }
 
 Catalog::Added Service::add_input(const std::string& kind, const std::string& digest) {
-    if (parts_->store.size_of(digest)) open_blob(digest);  // verifies it: facts of spoiled bytes must not be kept
+    try {
+        if (parts_->store.size_of(digest)) open_blob(digest);  // verifies it: facts of spoiled bytes must not be kept
+    } catch (const Refusal& refusal) {
+        if (refusal.why() != Refused::not_found) throw;
+        throw Refusal(Refused::unprocessable, refusal.what(), "sha256");  // as Catalog::add() of an unknown digest
+    }
     return parts_->catalog.add(kind, digest);
 }
 

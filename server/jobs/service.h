@@ -46,8 +46,8 @@ public:
     bool store_blob(IncomingFile& file, const std::string& expected_digest);
 
     /// Opens a blob, verified. A spoiled result is baked again.
-    /// Throws Refusal(not_found).
-    /// Throws Refusal(busy) for a spoiled blob.
+    /// Throws Refusal(not_found), also for a spoiled input: it must be sent again.
+    /// Throws Refusal(busy) for a spoiled result, and for a file that cannot be read now.
     OpenBlob open_blob(const std::string& digest);
     std::optional<std::uint64_t> blob_size(const std::string& digest);
 

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <spdlog/spdlog.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -14,9 +15,26 @@
 #include "server/store/refusal.h"
 #include "server/store/removal_log.h"
 #include "server/store/room.h"
+#include "server/store/store_advice.h"
 
 namespace hairbake {
 namespace fs = std::filesystem;
+namespace {
+
+[[noreturn]] void refuse_unknown(const std::string& upload) {
+    throw Refusal(Refused::not_found, "there is no upload " + shortened(upload, 64));
+}
+
+/// A folder that is missing with the file hides other uploads, too: it may come back.
+[[noreturn]] void refuse_lost(const fs::path& folder, const std::string& upload) {
+    if (kind_of_path(folder) != PathKind::folder)
+        throw Refusal(Refused::busy, "the uploads cannot be read now: " + folder.string() + " is missing. " +
+                                         advice_for(folder, ENOENT));
+    throw Refusal(Refused::not_found,
+                  "the bytes of the upload " + shortened(upload, 64) + " were lost: begin a new upload of the file");
+}
+
+}  // namespace
 
 /// Marks an upload as being written.
 struct Uploads::Busy {
@@ -70,14 +88,21 @@ void Uploads::recover() {
         });
         const bool is_file = entry.symlink_status().type() == fs::file_type::regular;
         if (known && is_file) continue;
-        std::error_code error;  // the bytes of a second link stay where the other link is
-        if (is_file && (entry.file_size(error) == 0 || entry.hard_link_count(error) > 1))
-            remove_counted(entry.path(), removed);
+        std::error_code error;
+        if (is_file && entry.file_size(error) == 0)
+            remove_counted(entry.path(), empty);
+        else if (is_file && is_blob_file(entry.path()))
+            remove_counted(entry.path(), doubled);
         else
             store_.put_aside(entry.path(), unknown);
     }
-    log_removal(removed, "uploads without a row that are empty, or whose bytes are a blob");
-    log_move(unknown, store_.lost_folder(), "the database does not know these uploads");
+    log_removal(empty, "empty uploads that the database does not know");
+    log_removal(doubled, "uploads that had become blobs, which keep the bytes");
+    log_move(unknown, store_.lost_folder(), "the database does not know these uploads, or they are no files");
+}
+
+void Uploads::recover() {
+    clear_unknown();
     database_.write([&](Sql& sql) {
         for (const SqlRow& row : sql.rows("SELECT id FROM uploads"))
             if (!fs::exists(folder_ / row.text(0))) sql.run("DELETE FROM uploads WHERE id = ?", {row.text(0)});
@@ -168,10 +193,11 @@ UploadState Uploads::get(const std::string& id) {
     UploadState state;
     database_.read([&](Sql& sql) {
         const auto rows = sql.rows("SELECT bytes, metadata, expires, sha256 FROM uploads WHERE id = ?", {id});
-        if (rows.empty()) throw Refusal(Refused::not_found, "there is no upload " + id.substr(0, 64));
+        if (rows.empty()) refuse_unknown(id);
         const auto bytes = static_cast<std::uint64_t>(rows[0].integer(0));
-        state = {id, rows[0].text(1), rows[0].text(3), bytes, size_on_disk(id), rows[0].number(2)};
+        state = {id, rows[0].text(1), rows[0].text(3), bytes, 0, rows[0].number(2)};
     });
+    state.offset = offset_of(id);
     return state;
 }
 
@@ -191,7 +217,7 @@ Uploads::Appended Uploads::append(const std::string& id, std::uint64_t offset, s
             prolong(id);  // what was acknowledged waits for room
         throw;
     }
-    const std::uint64_t size = size_on_disk(id);
+    const std::uint64_t size = offset_of(id);
     if (size == state.bytes) return complete(id);
     return {size, prolong(id), {}};
 }
@@ -207,16 +233,19 @@ void Uploads::receive(const UploadState& state, std::optional<std::uint64_t> len
     std::uint64_t left = state.bytes - state.offset;
     refuse_if_longer(length.value_or(0), left);
     const fs::path path = folder_ / state.id;
-    const Descriptor file(::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
-    if (!file) throw_store_error(path, errno);
+    const OpenedFile opened = open_file(path, O_WRONLY | O_APPEND);
+    if (!opened.file && (opened.kind == PathKind::file || opened.kind == PathKind::unknown))
+        throw_store_error(path, opened.error);
+    if (!opened.file) refuse_lost(folder_, state.id);
+    const int file = opened.file.get();
     Growth growth(*this, state.id, room_.reserve(length, store_.size_of(state.sha256).has_value()));
     read([&](std::span<const std::byte> bytes) {
         refuse_if_longer(bytes.size(), left);
         growth.share.grow(bytes.size());
-        write_all(file.get(), bytes, path);
+        write_all(file, bytes, path);
         left -= bytes.size();
     });
-    sync_file(file.get(), path);
+    sync_file(file, path);
 }
 
 double Uploads::prolong(const std::string& id) {
@@ -255,15 +284,19 @@ void Uploads::make_blob(const std::string& id, const std::string& digest) {
 /// Removes the upload's row and file. `reason` is for the log.
 void Uploads::forget(const std::string& id, std::string_view reason) {
     database_.write([&](Sql& sql) { sql.run("DELETE FROM uploads WHERE id = ?", {id}); });
-    FileCount removed;
+    FileCount removed, moved;
+    if (kind_of_path(folder_ / id) == PathKind::folder) store_.put_aside(folder_ / id, moved);
     remove_counted(folder_ / id, removed);
     log_removal(removed, reason);
+    log_move(moved, store_.lost_folder(), "a folder was in the place of an upload");
     room_.keep(id, 0);
 }
 
 void Uploads::remove(const std::string& id, std::string_view reason) {
     const Busy busy(*this, id);
-    get(id);
+    database_.read([&](Sql& sql) {
+        if (sql.rows("SELECT 1 FROM uploads WHERE id = ?", {id}).empty()) refuse_unknown(id);
+    });
     forget(id, reason);
 }
 

@@ -37,8 +37,8 @@ public:
     };
     Uploads(Database& database, BlobStore& store, Room& room, std::filesystem::path folder, const Limits& limits);
 
-    /// At boot: moves files without a row to lost+found, removes rows without a file; makes blobs of uploads that are
-    /// whole.
+    /// At boot: moves files without a row to lost+found, and removes those that are empty or a second link to a blob's
+    /// file; removes rows without a file; makes blobs of uploads that are whole.
     void recover();
     /// Removes expired uploads.
     void expire();
@@ -51,6 +51,9 @@ public:
     /// has no room now.
     UploadState create(std::uint64_t bytes, const std::string& sha256, const std::string& metadata,
                        const std::string& token);
+    /// Throws Refusal(not_found) when there is no such upload, or its bytes were lost.
+    /// Throws Refusal(busy) when the folder of all uploads is away.
+    /// Throws as throw_store_error() when its file cannot be looked at.
     UploadState get(const std::string& id);
 
     struct Appended {
@@ -69,6 +72,8 @@ public:
     Appended append(const std::string& id, std::uint64_t offset, std::optional<std::uint64_t> length,
                     const std::function<void(const Receiver&)>& read);
     /// `reason` is for the log.
+    /// Throws Refusal(not_found) when there is no such upload.
+    /// Throws Refusal(conflict) while a request writes to it.
     void remove(const std::string& id, std::string_view reason = "the upload was deleted on request");
 
 private:
@@ -79,6 +84,9 @@ private:
                  const std::function<void(const Receiver&)>& read);
     void forget(const std::string& id, std::string_view reason);
     std::uint64_t size_on_disk(const std::string& id) const;
+    std::uint64_t offset_of(const std::string& id) const;
+    bool is_blob_file(const std::filesystem::path& file) const;
+    void clear_unknown();
     double prolong(const std::string& id);
     Appended complete(const std::string& id);
     void make_blob(const std::string& id, const std::string& digest);

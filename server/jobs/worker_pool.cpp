@@ -153,6 +153,8 @@ std::string WorkerPool::task_for(const ClaimedStage& stage) {
         const std::string name = request[field].get<std::string>();
         if (!store_.size_of(digest))
             throw Error(ErrorKind::bad_input, name + " is no longer stored; send it again", field);
+        const PathKind kind = kind_of_path(store_.path_of(digest));
+        if (kind == PathKind::folder || kind == PathKind::other) remove_spoiled_inputs({digest});
         store_.touch(digest);
         const std::string path = store_.path_of(digest).string();
         request[field] = path;

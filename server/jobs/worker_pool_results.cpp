@@ -24,13 +24,19 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr std::size_t longest_manifest = 512 << 10;  // bytes; the longest ones have some 50 kB
 
-/// A missing file in a folder that is there has not its digest.
+/// A missing file in a folder that is there has not its digest, nor has a folder or a pipe.
 /// Throws Error with the system's error number when the file cannot be read.
 bool has_its_digest(const fs::path& file, const std::string& digest) try {
-    return digest_of_file(file) == digest;
+    const PathKind kind = kind_of_path(file);
+    return kind != PathKind::folder && kind != PathKind::other && digest_of_file(file) == digest;
 } catch (const Error& error) {
     if (error.system_error() == ENOENT && fs::is_directory(file.parent_path())) return false;
     throw;
+}
+
+bool is_link(const fs::path& path) {
+    std::error_code error;
+    return fs::is_symlink(fs::symlink_status(path, error));
 }
 
 }  // namespace
@@ -41,9 +47,9 @@ bool has_its_digest(const fs::path& file, const std::string& digest) try {
 void WorkerPool::remove_spoiled_inputs(const std::vector<std::string>& digests) {
     for (const std::string& digest : digests)
         if (!has_its_digest(store_.path_of(digest), digest)) {
-            store_.lose(digest, [&](Sql& sql) { queue_.blob_lost(sql, digest); });  // and the facts read from it
-            throw Error(ErrorKind::bad_input,
-                        "the stored bytes of sha256:" + digest + " were spoiled; send them again");
+            // and the facts read from it
+            const LostBlob lost = store_.lose(digest, [&](Sql& sql) { queue_.blob_lost(sql, digest); });
+            throw Error(ErrorKind::bad_input, lost.what());
         }
 }
 
@@ -53,6 +59,8 @@ void WorkerPool::remove_spoiled_inputs(const std::vector<std::string>& digests) 
 /// Throws Error(bad_input) when it is of another stage key because an input was spoiled.
 std::string WorkerPool::checked_manifest(const ClaimedStage& stage, const fs::path& folder) {
     const fs::path file = folder / "manifest.json";
+    if (const PathKind kind = kind_of_path(file); kind == PathKind::folder || kind == PathKind::other)
+        throw WrongResult("the worker's manifest is " + words_for_path(file));
     std::ifstream stream(file, std::ios::binary);
     if (!stream && !(errno == ENOENT && fs::is_directory(folder.parent_path())))
         throw Error(ErrorKind::internal, file.string() + ": " + std::generic_category().message(errno), {}, errno);
@@ -100,7 +108,7 @@ void WorkerPool::store_result(const ClaimedStage& stage, std::unique_ptr<WorkFol
     std::vector<StageFile> files;
     for (const Json& entry : described.at("files")) {
         const std::string name = entry.at("name").get<std::string>(), digest = entry.at("sha256").get<std::string>();
-        if (name.find('/') != std::string::npos || !has_its_digest(folder / name, digest))
+        if (name.find('/') != std::string::npos || is_link(folder / name) || !has_its_digest(folder / name, digest))
             throw WrongResult("the worker's file " + name + " is not as its manifest describes it");
         files.push_back({name, digest, entry.at("bytes").get<std::uint64_t>()});
     }

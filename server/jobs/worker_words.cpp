@@ -33,8 +33,12 @@ WorkerWords::WorkerWords(std::filesystem::path file, OnProgress on_progress)
 
 bool WorkerWords::read_more() {
     if (is_babbling_) return false;
-    if (!descriptor_) descriptor_ = Descriptor(::open(file_.c_str(), O_RDONLY | O_CLOEXEC));
-    trouble_ = descriptor_ ? 0 : errno;
+    trouble_ = 0;
+    if (!descriptor_) {
+        OpenedFile opened = open_file(file_, O_RDONLY);
+        trouble_ = opened.file ? 0 : opened.error != 0 ? opened.error : EINVAL;  // EINVAL: it is no file
+        descriptor_ = std::move(opened.file);
+    }
     if (!descriptor_) return false;
     std::string piece(piece_bytes, '\0');
     for (int i = 0; i < pieces_at_once; ++i) {

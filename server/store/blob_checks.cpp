@@ -3,10 +3,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
 #include "core/base/digest.h"
 #include "server/store/blob_store.h"
 #include "server/store/database.h"
 #include "server/store/refusal.h"
+#include "server/store/store_advice.h"
 
 namespace hairbake {
 namespace fs = std::filesystem;
@@ -22,18 +27,32 @@ bool is_at(const fs::path& path, int descriptor) {
 
 }  // namespace
 
-/// The reason why the file cannot be read may pass, so nothing is forgotten.
-void BlobStore::refuse_for_now(const std::string& digest) {
-    throw Refusal(Refused::busy, "the stored bytes of sha256:" + digest + " cannot be read now");
+/// The reason why the file cannot be read may pass, so nothing is forgotten. `error` is errno, or 0 where the file was
+/// replaced or removed meanwhile.
+void BlobStore::refuse_for_now(const std::string& digest, int error) const {
+    const std::string found = "the stored bytes of sha256:" + digest + " cannot be read now";
+    if (error == 0) throw Refusal(Refused::busy, found);
+    throw Refusal(Refused::busy,
+                  found + ": " + std::generic_category().message(error) + ". " + advice_for(path_of(digest), error));
+}
+
+/// Throws LostBlob when nothing is in the blob's place, or anything but a file.
+/// Throws Refusal(busy) for a file that cannot be opened now.
+Descriptor BlobStore::open_blob_file(const std::string& digest, const OnLoss& on_loss) {
+    OpenedFile opened = open_file(path_of(digest), O_RDONLY);
+    if (opened.file) return std::move(opened.file);
+    if (opened.kind == PathKind::file || opened.kind == PathKind::unknown) refuse_for_now(digest, opened.error);
+    lose_without_file(digest, on_loss);
 }
 
 /// A folder that is missing with the file hides more files than this one, so nothing is forgotten then.
-void BlobStore::lose_if_missing(const std::string& digest, const OnLoss& on_loss) {
+void BlobStore::lose_without_file(const std::string& digest, const OnLoss& on_loss) {
     const auto held = database_.lock();  // it may have been removed and sent again meanwhile
     const fs::path path = path_of(digest);
-    if (fs::exists(path) || !fs::exists(path.parent_path()) || !size_of(digest)) refuse_for_now(digest);
-    lose(digest, on_loss);
-    throw LostBlob(digest);
+    const PathKind kind = kind_of_path(path);
+    const bool is_lost = kind == PathKind::nothing || kind == PathKind::folder || kind == PathKind::other;
+    if (!is_lost || kind_of_path(path.parent_path()) != PathKind::folder || !size_of(digest)) refuse_for_now(digest);
+    throw lose(digest, on_loss);
 }
 
 bool BlobStore::is_verified(const std::string& digest, const FileFacts& facts) {
@@ -65,7 +84,7 @@ void BlobStore::note_other_link_removed(const std::string& digest) {
 void BlobStore::verify(const std::string& digest, int descriptor, const OnLoss& on_loss,
                        const std::function<void(std::size_t)>& pace) {
     const std::optional<FileFacts> facts = facts_of(descriptor);
-    if (!facts) refuse_for_now(digest);
+    if (!facts) refuse_for_now(digest, errno);
     if (!pace && is_verified(digest, *facts)) return;
     Digest found;
     std::vector<std::byte> piece(1 << 18);
@@ -74,13 +93,12 @@ void BlobStore::verify(const std::string& digest, int descriptor, const OnLoss& 
         found.add(std::span(piece).first(static_cast<std::size_t>(count)));
         if (pace) pace(static_cast<std::size_t>(count));
     }
-    if (count < 0) refuse_for_now(digest);
+    if (count < 0) refuse_for_now(digest, errno);
     if (found.hex() == digest) return note_verified(digest, *facts);
     const auto held = database_.lock();
     if (!is_at(path_of(digest), descriptor) || !size_of(digest))
         refuse_for_now(digest);  // replaced or removed meanwhile
-    lose(digest, on_loss);
-    throw LostBlob(digest);
+    throw lose(digest, on_loss);
 }
 
 std::vector<std::string> BlobStore::unchecked_since(double time, int most) {
@@ -96,8 +114,7 @@ std::vector<std::string> BlobStore::unchecked_since(double time, int most) {
 void BlobStore::check_digest(const std::string& digest, const OnLoss& on_loss,
                              const std::function<void(std::size_t)>& pace) {
     if (!size_of(digest)) return;
-    const Descriptor file(::open(path_of(digest).c_str(), O_RDONLY | O_CLOEXEC));
-    if (!file && errno == ENOENT) lose_if_missing(digest, on_loss);
+    const Descriptor file = open_blob_file(digest, on_loss);
     ::posix_fadvise(file.get(), 0, 0, POSIX_FADV_DONTNEED);  // the disk's bytes, not those that memory remembers
     verify(digest, file.get(), on_loss, pace);
     ::posix_fadvise(file.get(), 0, 0, POSIX_FADV_DONTNEED);

@@ -1,9 +1,12 @@
 // What BlobStore does at boot.
+#include <algorithm>
 #include <unordered_map>
+#include <utility>
 
 #include "core/base/error.h"
 #include "server/store/blob_store.h"
 #include "server/store/database.h"
+#include "server/store/input_text.h"
 #include "server/store/removal_log.h"
 
 namespace hairbake {
@@ -15,17 +18,21 @@ bool is_random_name(const std::string& name) {
     return name.size() == 32 && name.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
-/// The files in blobs/.
-std::vector<fs::path> files_in(const fs::path& folder) {
-    std::vector<fs::path> files;
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
-        if (entry.symlink_status().type() != fs::file_type::directory) files.push_back(entry.path());
-    return files;
+/// What is in the folders of blobs/: files, and whatever else is in the place of one.
+std::vector<fs::path> entries_in(const fs::path& folder) {
+    std::vector<fs::path> entries;
+    for (fs::recursive_directory_iterator entry(folder), end; entry != end; ++entry) {
+        const bool is_folder = entry->symlink_status().type() == fs::file_type::directory;
+        if (is_folder && entry.depth() == 0) continue;
+        entries.push_back(entry->path());
+        if (is_folder) entry.disable_recursion_pending();
+    }
+    return entries;
 }
 
 }  // namespace
 
-std::size_t BlobStore::recover(const std::set<std::string>& spared, bool may_miss_all) {
+LostBlobs BlobStore::recover(const std::set<std::string>& spared, bool may_miss_all) {
     std::unordered_map<std::string, std::int64_t> rows;
     database_.read([&](Sql& sql) {
         for (const SqlRow& row : sql.rows("SELECT sha256, bytes FROM blobs")) rows[row.text(0)] = row.integer(1);
@@ -33,10 +40,10 @@ std::size_t BlobStore::recover(const std::set<std::string>& spared, bool may_mis
     const std::size_t known = rows.size();
     std::vector<fs::path> others;
     bool some_have_files = false;
-    for (const fs::path& file : files_in(folder_ / "blobs")) {
+    for (const fs::path& file : entries_in(folder_ / "blobs")) {
         const auto row = rows.find(file.filename().string());
-        some_have_files |= row != rows.end();
         const std::optional<FileFacts> facts = facts_of(file);
+        some_have_files |= row != rows.end() && facts;
         if (row != rows.end() && facts && facts->bytes == row->second)
             rows.erase(row);  // as it should be
         else
@@ -51,10 +58,24 @@ std::size_t BlobStore::recover(const std::set<std::string>& spared, bool may_mis
                         "be sent again");
     sweep_incoming(spared);
     clear_unknown_files(others);
-    std::vector<std::string> lost;
-    for (const auto& [digest, bytes] : rows) lost.push_back(digest);
-    if (!lost.empty()) forget(lost);
-    return lost.size();
+    std::vector<std::string> missing;
+    for (const auto& [digest, bytes] : rows) missing.push_back(digest);
+    return missing.empty() ? LostBlobs() : forget_missing(missing);
+}
+
+LostBlobs BlobStore::forget_missing(const std::vector<std::string>& digests) {
+    LostBlobs lost;
+    forget([&](Sql& sql) {
+        lost = {};
+        for (const std::string& digest : digests)
+            if (std::optional<std::string> input = input_text(sql, digest))
+                lost.inputs.push_back(std::move(*input));
+            else
+                ++lost.results;
+        return digests;
+    });
+    std::sort(lost.inputs.begin(), lost.inputs.end());
+    return lost;
 }
 
 /// Files of other names are not ours and stay.
@@ -83,7 +104,7 @@ void BlobStore::clear_unknown_files(const std::vector<fs::path>& files) {
             put_aside(file, moved);
     }
     log_removal(removed, "their blobs were removed before the daemon ended");
-    log_move(moved, lost_folder(), "the database does not know these files, or their size is wrong");
+    log_move(moved, lost_folder(), "the database does not know these files, their size is wrong, or they are no files");
     log_held(lost_found_.held(), folder_ / "lost+found");
 }
 

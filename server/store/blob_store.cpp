@@ -1,6 +1,5 @@
 #include "server/store/blob_store.h"
 
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -12,6 +11,7 @@
 #include "core/base/assert.h"
 #include "core/base/short_text.h"
 #include "server/store/database.h"
+#include "server/store/input_text.h"
 #include "server/store/refusal.h"
 
 namespace hairbake {
@@ -41,7 +41,8 @@ FileFacts read_facts(const struct stat& facts) {
 
 std::optional<FileFacts> facts_of(const fs::path& file) {
     struct stat facts {};
-    return ::stat(file.c_str(), &facts) == 0 ? std::optional(read_facts(facts)) : std::nullopt;
+    if (::stat(file.c_str(), &facts) != 0 || !S_ISREG(facts.st_mode)) return std::nullopt;
+    return read_facts(facts);
 }
 
 std::optional<FileFacts> facts_of(int descriptor) {
@@ -97,6 +98,7 @@ bool BlobStore::adopt(const fs::path& file, const std::string& digest, Origin or
     const std::optional<FileFacts> stored = known ? facts_of(path) : std::nullopt;
     // Stored bytes that were not verified since the start may be spoiled; those of `file` are good.
     if (!stored || !is_verified(digest, *stored)) {
+        clear_place(path);
         if (::rename(file.c_str(), path.c_str()) != 0) throw_store_error(file, errno);
         sync_folder(path.parent_path());
         const FileFacts facts = facts_of(path).value_or(FileFacts{});
@@ -137,23 +139,51 @@ OpenBlob BlobStore::open(const std::string& digest, const OnLoss& on_loss) {
     return blob;
 }
 
-void BlobStore::lose(const std::string& digest, const OnLoss& on_loss) {
+namespace {
+
+LostBlob describe_loss(Sql& sql, const std::string& digest) {
+    const std::string lost = "the stored bytes of sha256:" + digest + " were lost or spoiled";
+    if (!sql.rows("SELECT 1 FROM stage_files WHERE sha256 = ? LIMIT 1", {digest}).empty())
+        return {lost + "; the result is baked again", true};
+    if (const auto input = input_text(sql, digest)) return {lost + ": send " + *input + " again", false};
+    return {lost, false};
+}
+
+}  // namespace
+
+LostBlob BlobStore::lose(const std::string& digest, const OnLoss& on_loss) {
     const auto held = database_.lock();
-    forget({digest}, on_loss);
+    std::optional<LostBlob> lost;
+    database_.read([&](Sql& sql) { lost = describe_loss(sql, digest); });  // its rows are gone afterwards
+    const fs::path path = path_of(digest);
+    const std::string found = words_for_path(path);
+    forget([&](Sql&) { return std::vector{digest}; }, on_loss);
     FileCount moved;
-    if (fs::exists(path_of(digest))) put_aside(path_of(digest), moved);
-    log_move(moved, lost_folder(), "the bytes of blob " + digest + " do not have its digest");
+    if (found != "nothing") put_aside(path, moved);
+    log_move(moved, lost_folder(),
+             found == "a file" ? "the bytes of blob " + digest + " do not have its digest"
+                               : found + " was in the place of blob " + digest);
+    return *lost;
+}
+
+void BlobStore::remove(const std::vector<std::string>& digests, std::string_view reason) {
+    remove([&](Sql&) { return digests; }, reason);
 }
 
 /// The rows in `removals` tell the next start that these files may go, should this process die before all are gone.
-void BlobStore::remove(const std::vector<std::string>& digests, std::string_view reason) {
+void BlobStore::remove(const Choice& choose, std::string_view reason) {
     const auto held = database_.lock();
-    forget(digests, [&](Sql& sql) {
-        for (const std::string& digest : digests)
+    const std::vector<std::string> digests = forget([&](Sql& sql) {
+        std::vector<std::string> chosen = choose(sql);
+        for (const std::string& digest : chosen)
             sql.run("INSERT OR REPLACE INTO removals VALUES(?, ?)", {digest, now()});
+        return chosen;
     });
     FileCount removed;
-    for (const std::string& digest : digests) remove_counted(path_of(digest), removed);
+    for (const std::string& digest : digests) {
+        clear_place(path_of(digest));
+        remove_counted(path_of(digest), removed);
+    }
     log_removal(removed, reason);
 }
 
@@ -162,10 +192,23 @@ void BlobStore::put_aside(const fs::path& file, FileCount& count) {
     lost_found_.take(file, count);
 }
 
-void BlobStore::forget(const std::vector<std::string>& digests, const OnLoss& in_transaction) {
+/// Moves a folder, a pipe or a device away that is in the place of a blob's file.
+void BlobStore::clear_place(const fs::path& path) {
+    const PathKind kind = kind_of_path(path);
+    if (kind != PathKind::folder && kind != PathKind::other) return;
+    const std::string found = words_for_path(path);
+    FileCount moved;
+    put_aside(path, moved);
+    log_move(moved, lost_folder(), found + " was in the place of blob " + path.filename().string());
+}
+
+/// Forgets the blobs that `choose` names, in one transaction; returns them.
+std::vector<std::string> BlobStore::forget(const Choice& choose, const OnLoss& in_transaction) {
     const auto held = database_.lock();
+    std::vector<std::string> digests;
     std::int64_t bytes = 0;
     database_.write([&](Sql& sql) {
+        digests = choose(sql);
         for (const std::string& digest : digests)
             for (const SqlRow& row : sql.rows("DELETE FROM blobs WHERE sha256 = ? RETURNING bytes", {digest}))
                 bytes += row.integer(0);
@@ -178,6 +221,7 @@ void BlobStore::forget(const std::vector<std::string>& digests, const OnLoss& in
         checked_.erase(digest);
         used_.erase(digest);
     }
+    return digests;
 }
 
 void BlobStore::touch(const std::string& digest) {

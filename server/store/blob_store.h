@@ -36,8 +36,14 @@ std::string blob_name(const std::string& digest);
 /// in one transaction.
 class LostBlob : public std::runtime_error {
 public:
-    explicit LostBlob(const std::string& digest)
-        : std::runtime_error("the stored bytes of sha256:" + digest + " were lost or spoiled") {}
+    /// `comes_back`: a stage wrote it, which is baked again.
+    LostBlob(const std::string& message, bool comes_back) : std::runtime_error(message), comes_back_(comes_back) {}
+
+    /// False for an input, which must be sent again, and for a thumbnail.
+    bool comes_back() const { return comes_back_; }
+
+private:
+    bool comes_back_;
 };
 
 /// Where a blob's bytes come from: a client sent them, or a worker made them.
@@ -54,10 +60,15 @@ struct FileFacts {
     bool operator==(const FileFacts&) const = default;
 };
 
-/// Nothing when there is no file or it cannot be looked at.
+/// Nothing when there is no regular file or it cannot be looked at.
 std::optional<FileFacts> facts_of(const std::filesystem::path& file);
-/// The same of an open file; nothing, too, when it is no regular file.
 std::optional<FileFacts> facts_of(int descriptor);
+
+/// Blobs that a start found missing.
+struct LostBlobs {
+    std::size_t results = 0;          ///< and other blobs that no client sent
+    std::vector<std::string> inputs;  ///< as input_text() names them: they must be sent again
+};
 
 /// `folder`/blobs/ab/<sha256>, `folder`/tmp and the table `blobs`. Thread-safe. docs/architecture.md tells how a blob
 /// becomes durable.
@@ -72,10 +83,10 @@ public:
     ///
     /// Removes the bodies and work folders in tmp/ but those in `spared`, and files of blobs whose removal was
     /// committed.
-    /// Moves other files without a row, and files of another size, to lost+found. Forgets rows without a whole file and
-    /// returns how many; Queue::recover() updates what refers to them.
+    /// Moves other files without a row, files of another size, and what is no file to lost+found. Forgets rows without a
+    /// whole file and returns them; Queue::recover() updates what refers to them.
     /// Throws Error(bad_input), and changes nothing, when no blob has a file and not `may_miss_all`.
-    std::size_t recover(const std::set<std::string>& spared = {}, bool may_miss_all = false);
+    LostBlobs recover(const std::set<std::string>& spared = {}, bool may_miss_all = false);
 
     std::filesystem::path incoming_folder() const { return folder_ / "tmp"; }
     std::filesystem::path path_of(const std::string& digest) const;
@@ -103,8 +114,9 @@ public:
     /// Throws LostBlob.
     OpenBlob open(const std::string& digest, const OnLoss& on_loss);
 
-    /// Forgets a blob whose bytes do not have its digest, and moves the file to lost+found.
-    void lose(const std::string& digest, const OnLoss& on_loss);
+    /// Forgets a blob whose bytes do not have its digest, and moves what is in its place to lost+found. Returns the
+    /// exception for the caller to throw.
+    LostBlob lose(const std::string& digest, const OnLoss& on_loss);
 
     /// At most `most` blobs whose digest was last checked before `time` (seconds since 1970), longest ago first.
     std::vector<std::string> unchecked_since(double time, int most);
@@ -119,6 +131,9 @@ public:
 
     /// Removes rows and files, in one transaction. `reason` is for the log.
     void remove(const std::vector<std::string>& digests, std::string_view reason);
+    /// The same for the blobs that `choose` names; it may change other rows in the same transaction.
+    using Choice = std::function<std::vector<std::string>(Sql&)>;
+    void remove(const Choice& choose, std::string_view reason);
 
     /// Moves a file of the store to lost+found and adds it to `count`.
     void put_aside(const std::filesystem::path& file, FileCount& count);
@@ -129,6 +144,7 @@ public:
     void flush_uses();
 
 private:
+    LostBlobs forget_missing(const std::vector<std::string>& digests);
     void sweep_incoming(const std::set<std::string>& spared);
     void clear_unknown_files(const std::vector<std::filesystem::path>& files);
     bool is_verified(const std::string& digest, const FileFacts& facts);
@@ -136,9 +152,11 @@ private:
     void verify(const std::string& digest, int descriptor, const OnLoss& on_loss,
                 const std::function<void(std::size_t)>& pace = {});
     void note_verified(const std::string& digest, const FileFacts& facts);
-    [[noreturn]] static void refuse_for_now(const std::string& digest);
-    [[noreturn]] void lose_if_missing(const std::string& digest, const OnLoss& on_loss);
-    void forget(const std::vector<std::string>& digests, const OnLoss& in_transaction = {});
+    [[noreturn]] void refuse_for_now(const std::string& digest, int error = 0) const;
+    Descriptor open_blob_file(const std::string& digest, const OnLoss& on_loss);
+    [[noreturn]] void lose_without_file(const std::string& digest, const OnLoss& on_loss);
+    void clear_place(const std::filesystem::path& path);
+    std::vector<std::string> forget(const Choice& choose, const OnLoss& in_transaction = {});
 
     std::filesystem::path folder_;
     Database& database_;

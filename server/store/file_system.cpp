@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/random.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -122,5 +123,20 @@ Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
 }
 
 int Descriptor::release() { return std::exchange(descriptor_, -1); }
+
+OpenedFile open_file(const std::filesystem::path& path, int flags) {
+    OpenedFile opened{Descriptor(::open(path.c_str(), flags | O_CLOEXEC | O_NONBLOCK | O_NOCTTY))};
+    struct stat facts {};
+    if (opened.file && ::fstat(opened.file.get(), &facts) == 0) {
+        opened.kind = kind_of_mode(facts.st_mode);
+        if (opened.kind != PathKind::file) opened.file = Descriptor();
+        return opened;
+    }
+    opened.error = errno;
+    opened.file = Descriptor();
+    opened.kind = kind_of_path(path);  // a socket, some devices and a pipe without a reader cannot be opened
+    if (opened.kind == PathKind::nothing && opened.error != ENOENT) opened.kind = PathKind::unknown;  // gone meanwhile
+    return opened;
+}
 
 }  // namespace hairbake

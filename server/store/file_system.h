@@ -14,6 +14,23 @@ namespace hairbake {
 /// Throws Error(out_of_resources) for a disk that is full or cannot be written, Error(internal) otherwise.
 [[noreturn]] void throw_store_error(const std::filesystem::path& file, int error);
 
+/// What is at a path. A symbolic link counts as what it leads to.
+enum class PathKind {
+    nothing,
+    file,    ///< a regular file
+    folder,  ///< a directory
+    other,   ///< a named pipe, a socket, a device, or a link that leads to itself
+    unknown  ///< the system does not say
+};
+
+PathKind kind_of_path(const std::filesystem::path& path);
+
+/// Whether a regular file is at the path itself: a symbolic link is none.
+bool is_plain_file(const std::filesystem::path& path);
+
+/// "a folder", "a named pipe" and so on: what is at the path itself, for people. Links are not followed.
+std::string words_for_path(const std::filesystem::path& path);
+
 /// Writes all bytes.
 /// Throws as throw_store_error().
 void write_all(int descriptor, std::span<const std::byte> bytes, const std::filesystem::path& file);
@@ -42,5 +59,16 @@ public:
 private:
     int descriptor_;
 };
+
+/// A file that was opened, or the reason why not.
+struct OpenedFile {
+    Descriptor file;                 ///< of a regular file
+    PathKind kind = PathKind::file;  ///< of what is at the path; `file` without a descriptor: it cannot be opened now
+    int error = 0;                   ///< errno where the system does not open or does not say
+};
+
+/// Opens the regular file at `path`. Never waits, whatever is there: a plain open() of a named pipe waits for its other
+/// end. `flags` are those of open(2), without O_CREAT.
+OpenedFile open_file(const std::filesystem::path& path, int flags);
 
 }  // namespace hairbake

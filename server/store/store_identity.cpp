@@ -31,7 +31,11 @@ constexpr const char* advice_to_accept =
 std::optional<StoreIdentity::Mark> StoreIdentity::read_mark(const fs::path& folder) {
     const fs::path file = folder / file_name;
     check_access(folder, file, false);
-    if (!fs::exists(file)) return std::nullopt;
+    const PathKind kind = kind_of_path(file);
+    if (kind == PathKind::nothing) return std::nullopt;
+    if (kind != PathKind::file)  // opening a named pipe would wait for ever
+        throw Error(ErrorKind::bad_input, file.string() + " is " + words_for_path(file) + "; allowed is a file" +
+                                              is_untouched + "Move it away and put the file back");
     std::ifstream stream(file);
     std::string id_word, generation_word;
     Mark mark;

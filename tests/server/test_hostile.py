@@ -51,6 +51,7 @@ WORKER = """#!/bin/sh
 for folder; do :; done
 task=$(cat "$folder/task.json")
 real() { exec "REAL" "$@"; }
+make() { "REAL" --parent=$$ "$folder"; }
 say() { printf '%s\\n' "$1" >> "$folder/words.jsonl"; }
 case $task in
 RULES
@@ -68,6 +69,9 @@ RULES = """
 *'"seed":17,'*) say '{"error":{"kind":"bad_input","message":"as I say","field":"hair"}}'; exit 1 ;;
 *'"seed":18,'*) say '{"phase":"write","fraction":"x"}'; say '[[[['; say '{"error":[]}'; say '{"done":'; exit 0 ;;
 *'"seed":19,'*) say '{"begin":{}}'; sleep 1000 & exit 3 ;;
+*'"seed":20,'*) make; rm "$folder/result/transmittance.npy"; mkfifo "$folder/result/transmittance.npy" ;;
+*'"seed":21,'*) make; rm "$folder/result/manifest.json"; mkfifo "$folder/result/manifest.json" ;;
+*'"seed":22,'*) make; mv "$folder/result/transmittance.npy" "$folder"; ln -s "$folder/transmittance.npy" "$folder/result" ;;
 """
 
 
@@ -80,6 +84,7 @@ def write_worker(daemon, rules):
 
 
 class BadWorkers(unittest.TestCase):
+    # 20 to 22: reading a pipe in the place of a result would keep the daemon's thread for ever, and a link would become a blob.
     def test_each_fails_its_job_with_the_reason_and_leaves_the_others_alone(self):
         with Daemon(workers=2, max_crashes=0) as d:
             d.stop()
@@ -94,7 +99,8 @@ class BadWorkers(unittest.TestCase):
 
             words = {11: "Segmentation fault", 12: "not done after 30 seconds", 13: "not done after 30 seconds",
                      14: "a line of more than 1 MiB", 15: "manifest", 16: "ended with code 3", 17: "as I say",
-                     18: "ended with code 0", 19: "ended with code 3"}
+                     18: "ended with code 0", 19: "ended with code 3", 20: "transmittance.npy is not as its manifest",
+                     21: "manifest is a named pipe", 22: "transmittance.npy is not as its manifest"}
             bakes = {seed: post(seed) for seed in [*words, 1, 2]}
             for seed, word in words.items():
                 view = d.wait(bakes[seed])
