@@ -130,7 +130,7 @@ std::vector<Route> upload_routes(Service& service) {
         {"DELETE", one, Scope::upload, 0,
          tus(service,
              [](Service& s, HttpRequest& request) {
-                 s.uploads().remove(request.parameters.at("id"));
+                 s.remove_upload(request.parameters.at("id"));
                  return tus_reply(204);
              })},
     };

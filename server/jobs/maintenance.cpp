@@ -6,6 +6,7 @@
 
 #include "server/jobs/uploads.h"
 #include "server/store/blob_store.h"
+#include "server/store/disk_reserve.h"
 #include "server/store/pruning.h"
 #include "server/store/room.h"
 #include "server/store/store_identity.h"
@@ -13,12 +14,13 @@
 namespace hairbake {
 
 Maintenance::Maintenance(Database& database, StoreIdentity& identity, BlobStore& store, Room& room, Uploads& uploads,
-                         double keep_failed_s)
+                         DiskReserve& reserve, double keep_failed_s)
     : database_(database),
       identity_(identity),
       store_(store),
       room_(room),
       uploads_(uploads),
+      reserve_(reserve),
       keep_failed_s_(keep_failed_s) {
     prune_bakes();
     thread_ = std::jthread([this] { run(); });
@@ -46,6 +48,7 @@ void Maintenance::run() {
             uploads_.expire();
             prune_bakes();
             room_.trim();
+            reserve_.fill();
             identity_.advance_if_changed();
         } catch (const std::exception& error) {
             spdlog::error("maintenance: {}", error.what());

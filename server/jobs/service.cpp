@@ -16,6 +16,7 @@
 #include "server/jobs/sent_blobs.h"
 #include "server/jobs/worker_pool.h"
 #include "server/store/database.h"
+#include "server/store/disk_reserve.h"
 #include "server/store/room.h"
 #include "server/store/store_folder.h"
 #include "server/store/store_identity.h"
@@ -45,6 +46,7 @@ struct Service::Parts {
           database(folder.database(), folder.hooks()),
           identity(folder.path(), database, settings.store_id),
           store(settings.store, database),
+          reserve(settings.store, database),
           room(database, store, settings.store, {settings.budget_bytes, settings.keep_free_bytes}),
           runner(std::move(with)),
           inspector(make_runner(local_runner_name, runner_settings(settings))),
@@ -105,6 +107,7 @@ struct Service::Parts {
     Database database;
     StoreIdentity identity;
     BlobStore store;
+    DiskReserve reserve;
     Room room;
     std::unique_ptr<Runner> runner, inspector;  ///< of stages, of inspections
     Queue queue;
@@ -184,11 +187,15 @@ std::string Service::list_blobs(const std::string& cursor, int limit, bool unnee
 }
 
 void Service::remove_input(const std::string& kind, const std::string& digest, bool force) {
-    hairbake::remove_input(parts_->database, parts_->store, kind, digest, force);
+    parts_->reserve.run([&] { hairbake::remove_input(parts_->store, kind, digest, force); });
 }
 
 void Service::remove_blob(const std::string& digest, bool force) {
-    hairbake::remove_blob(parts_->database, parts_->store, digest, force);
+    parts_->reserve.run([&] { hairbake::remove_blob(parts_->store, digest, force); });
+}
+
+void Service::remove_upload(const std::string& id) {
+    parts_->reserve.run([&] { parts_->uploads.remove(id); });
 }
 
 Catalog::Added Service::add_input(const std::string& kind, const std::string& digest) {

@@ -7,6 +7,7 @@
 //   uploads/      unfinished uploads
 //   tmp/          bodies and results that are being written
 //   lost+found/   files that the database does not know (lost_found.h)
+//   reserve       space for deletions on a full disk (disk_reserve.h)
 #pragma once
 
 #include <filesystem>
