@@ -33,6 +33,8 @@ public:
     /// Returns `size`, or -1 when buffered bytes cannot be sent.
     ssize_t write(const char* data, std::size_t size);
     bool flush();
+    /// Whether bytes were received that nobody has read.
+    bool has_unread() const { return ahead_begin_ < ahead_end_; }
     /// Whether bytes can be read, or written, before the patience ends.
     bool await_readable() const;
     bool await_writable() const;

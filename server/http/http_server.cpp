@@ -9,10 +9,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <exception>
 #include <limits>
 #include <optional>
+#include <string_view>
+#include <utility>
 
 #include "core/base/error.h"
 #include "server/http/connection.h"
@@ -46,17 +49,28 @@ public:
     bool is_writable() const override { return connection_.await_writable(); }
     ssize_t read(char* data, std::size_t size) override {
         if (in_head_ && ++head_bytes_ > longest_head) return -1;  // the library reads a head byte by byte
+        if (!in_head_ && std::exchange(client_waits_, false) && !send_continue()) return -1;
         return connection_.read(data, size);
     }
-    void end_head() { in_head_ = false; }
+    /// `client_waits`: it sends its body only after a reply "100 Continue". The reply goes out when the body is read for
+    /// the first time, so a request that is refused by its head gets its refusal alone.
+    void end_head(bool client_waits) {
+        in_head_ = false;
+        client_waits_ = client_waits;
+    }
     ssize_t write(const char* data, std::size_t size) override { return connection_.write(data, size); }
     void get_remote_ip_and_port(std::string&, int&) const override {}  // not used
     void get_local_ip_and_port(std::string&, int&) const override {}
     socket_t socket() const override { return connection_.socket(); }
 
 private:
+    bool send_continue() {
+        constexpr std::string_view reply = "HTTP/1.1 100 Continue\r\n\r\n";
+        return connection_.has_unread() || (connection_.write(reply.data(), reply.size()) >= 0 && connection_.flush());
+    }
+
     Connection& connection_;
-    bool in_head_ = true;
+    bool in_head_ = true, client_waits_ = false;
     std::size_t head_bytes_ = 0;
 };
 
@@ -79,6 +93,13 @@ void refuse_connection(int accepted, Lingering& lingering) {
     connection.write(text.data(), text.size());
     connection.flush();
     lingering.add(connection.release());
+}
+
+/// Whether the client waits for "100 Continue" (RFC 9110, section 10.1.1).
+bool awaits_continue(const httplib::Request& request) {
+    std::string expected = request.get_header_value("Expect");
+    std::transform(expected.begin(), expected.end(), expected.begin(), [](unsigned char c) { return std::tolower(c); });
+    return expected == "100-continue" && request.version == "HTTP/1.1";
 }
 
 bool is_chunked(const httplib::Request& request) { return request.has_header("Transfer-Encoding"); }
@@ -205,7 +226,6 @@ public:
     Listener(const HttpServerSettings& settings, HttpServer::Handler handler)
         : handler_(std::move(handler)), accel_(settings.accel), address_(bind(settings)), listening_(svr_sock_.load()) {
         set_payload_max_length(std::numeric_limits<std::size_t>::max());  // the router limits bodies
-        set_expect_100_continue_handler([](const httplib::Request&, httplib::Response&) { return 100; });
         handle_requests();
         handle_failures();
         threads_.emplace(
@@ -318,9 +338,10 @@ private:
         ConnectionStream stream(connection);
         bool closed = false;
         process_request(stream, "", 0, "", 0, true, closed, [&stream](httplib::Request& request) {
-            stream.end_head();
-            request.path = any_path;  // the real path is in the target
-            request.ranges.clear();   // we parse Range ourselves
+            stream.end_head(awaits_continue(request));
+            request.headers.erase("Expect");  // the library would reply before the request is checked
+            request.path = any_path;          // the real path is in the target
+            request.ranges.clear();           // we parse Range ourselves
         });
     }
 
