@@ -92,8 +92,10 @@ struct Service::Parts {
             spdlog::info("{} queued stages of another version of hairbake were planned again", recovered.planned_again);
         begin_generation();
         spdlog::info("the store {} has the id {}", settings.store.string(), identity.id());
-        if (const auto warning = room.warning()) spdlog::warn("{}", *warning);
-        maintenance = std::make_unique<Maintenance>(database, identity, store, room, uploads, settings.keep_failed_s);
+        reserve.fill();
+        for (const std::string& warning : room.warnings()) spdlog::warn("{}", warning);
+        maintenance =
+            std::make_unique<Maintenance>(database, identity, store, room, uploads, reserve, settings.keep_failed_s);
         scrub = std::make_unique<Scrub>(store, settings.scrub_s,
                                         [this](Sql& sql, const std::string& digest) { queue.blob_lost(sql, digest); });
         check_worker();
@@ -250,7 +252,11 @@ std::string Service::not_ready() {
     return {};
 }
 
-void Service::cancel(const std::string& bake) { parts_->queue.cancel(bake); }
+std::vector<std::string> Service::warnings() { return parts_->room.warnings(); }
+
+void Service::cancel(const std::string& bake) {
+    parts_->reserve.run([&] { parts_->queue.cancel(bake); });
+}
 
 Service::Counts Service::counts() {
     Counts counts;

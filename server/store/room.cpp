@@ -219,7 +219,14 @@ std::uint64_t Room::free_bytes() const {
     return static_cast<std::uint64_t>(disk.f_bavail) * disk.f_frsize;
 }
 
-std::optional<std::string> Room::warning() {
+std::vector<std::string> Room::warnings() {
+    std::vector<std::string> found;
+    for (std::optional<std::string> warning : {disk_warning(), input_warning()})
+        if (warning) found.push_back(std::move(*warning));
+    return found;
+}
+
+std::optional<std::string> Room::disk_warning() {
     const std::uint64_t disk = free_bytes() + store_.total_bytes() + others();
     const std::uint64_t usable = disk - std::min(disk, limits_.keep_free);
     if (usable >= limits_.budget) return std::nullopt;
@@ -227,6 +234,22 @@ std::optional<std::string> Room::warning() {
            " MB of the store, with keep_free_mb = " + mb(limits_.keep_free) +
            ": before the budget is used up the disk is, and then uploads are refused and nothing is evicted. Lower "
            "budget_mb, or use a larger disk";
+}
+
+std::optional<std::string> Room::input_warning() {
+    if (store_.total_bytes() <= limits_.budget) return std::nullopt;  // then inputs fit, too; the sum below is slow
+    std::uint64_t inputs = 0;
+    database_.read([&](Sql& sql) {
+        inputs = static_cast<std::uint64_t>(
+            sql.rows("SELECT sum(bytes) FROM sent_blobs JOIN blobs USING(sha256)").at(0).integer(0));
+    });
+    if (inputs <= limits_.budget) return std::nullopt;
+    constexpr std::uint64_t one_mb = 1 << 20;
+    return "inputs have " + std::to_string(inputs) + " bytes; budget_mb is " + mb(limits_.budget) + ", which are " +
+           std::to_string(limits_.budget) +
+           " bytes: inputs are never evicted, so uploads are refused and no result can be stored. Delete inputs (GET "
+           "/v1/blobs lists them), or raise budget_mb to more than " +
+           mb(inputs + one_mb - 1);
 }
 
 }  // namespace hairbake

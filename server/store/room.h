@@ -91,13 +91,25 @@ public:
     /// Brings the store back into its budget as far as evictions can.
     void trim();
 
-    /// What an operator should know when the disk is smaller than the budget, or nothing.
-    std::optional<std::string> warning();
+    /// Throws as make_room(), and evicts nothing.
+    void require_room(std::uint64_t bytes);
+
+    /// Bytes that the disk has free.
+    std::uint64_t disk_free() const { return free_bytes(); }
+
+    /// Whether `bytes` more fit without an eviction.
+    bool fits(std::uint64_t bytes) const { return excess(others() + bytes) == 0; }
+
+    /// What an operator should know: the disk is smaller than the budget, or inputs alone exceed it.
+    std::vector<std::string> warnings();
 
 private:
     void promise(std::uint64_t bytes, bool counts, const Counters& own);
     void admit(std::uint64_t bytes, const Counters& own, const std::function<void(Counters&)>& add);
     void make_room(std::uint64_t bytes, const Counters& own);
+    std::uint64_t require_room(std::uint64_t bytes, const Counters& own);
+    std::optional<std::string> disk_warning();
+    std::optional<std::string> input_warning();
     void arrive(std::uint64_t bytes, bool counts);
     void set_kept(const std::string& upload, std::uint64_t bytes);
     std::uint64_t others() const;
