@@ -37,6 +37,18 @@ std::optional<BodyPlaces::Place> BodyPlaces::take(const std::string& address) {
     return Place(*this, std::move(client));
 }
 
+std::string BodyPlaces::refusal(const std::string& address) {
+    const std::lock_guard lock(mutex_);
+    const auto found = taken_by_.find(client_of(address));
+    const int own = found == taken_by_.end() ? 0 : found->second;
+    const std::string bodies = " uploads and long bodies are under way";
+    if (own >= per_address_)
+        return std::to_string(own) + bodies + " from your address; allowed are up to " + std::to_string(per_address_) +
+               " at once ([listen] bodies_per_address)";
+    return std::to_string(taken_) + bodies + "; allowed are up to " + std::to_string(places_) +
+           " at once ([listen] bodies)";
+}
+
 void BodyPlaces::free(const std::string& client) {
     const std::lock_guard lock(mutex_);
     --taken_;

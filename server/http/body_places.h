@@ -36,6 +36,9 @@ public:
     /// Nothing when all places, or all of this address, are taken.
     std::optional<Place> take(const std::string& address);
 
+    /// Why take() gave nothing: how many places are taken, how many are allowed, by which setting.
+    std::string refusal(const std::string& address);
+
 private:
     void free(const std::string& client);
 

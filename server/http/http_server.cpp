@@ -84,9 +84,12 @@ void or_drop(const std::function<void()>& answer) {
 }
 
 /// Never waits for the client: one thread refuses all connections.
-void refuse_connection(int accepted, Lingering& lingering) {
+void refuse_connection(int accepted, const HttpServerSettings& settings, Lingering& lingering) {
     Connection connection(accepted, {.first_byte = 0s, .read = 0s, .write = 0s});
-    HttpReply busy = problem(503, "busy", "too many requests are waiting");
+    HttpReply busy = problem(503, "busy",
+                             std::to_string(settings.threads) + " requests are being answered and " +
+                                 std::to_string(settings.waiting) +
+                                 " wait; allowed are no more ([listen] threads, waiting): try again in 2 s");
     const std::string text = "HTTP/1.1 503 Service Unavailable\r\nContent-Type: " + busy.type +
                              "\r\nContent-Length: " + std::to_string(busy.body.size()) +
                              "\r\nRetry-After: 2\r\nConnection: close\r\n\r\n" + busy.body;
@@ -231,7 +234,7 @@ public:
         threads_.emplace(
             listening_.get(), settings.threads, settings.waiting,
             [this](int accepted) { or_drop([&] { serve_connection(accepted); }); },
-            [this](int accepted) { or_drop([&] { refuse_connection(accepted, lingering_); }); });
+            [this, settings](int accepted) { or_drop([&] { refuse_connection(accepted, settings, lingering_); }); });
     }
 
     const std::string& address() const { return address_; }

@@ -114,7 +114,9 @@ HttpReply Router::answer_or_throw(HttpRequest& request) const {
     const auto place = needs_place(request, *route) ? places_.take(request.header("X-Forwarded-For").value_or(""))
                                                     : std::optional<BodyPlaces::Place>();
     if (needs_place(request, *route) && !place)
-        return problem(429, "too-many", "more uploads or long bodies at once than allowed").with("Retry-After", "1");
+        return problem(429, "too-many",
+                       places_.refusal(request.header("X-Forwarded-For").value_or("")) + ": try again in 1 s")
+            .with("Retry-After", "1");
     // The length of the body is limited here, for all handlers.
     const auto read = request.read_body;
     request.read_body = [read,

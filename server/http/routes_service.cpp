@@ -22,10 +22,37 @@ HttpReply version() {
         Json{{"name", "hairbaked"}, {"version", HAIRBAKE_VERSION}, {"api", "v1"}, {"algorithms", algorithms}}.dump());
 }
 
-HttpReply ready(Service& service) {
+/// Whether the caller may know where the service has its files: it is on this machine, or has a token.
+bool may_know_paths(Access& access, HttpRequest& request) try {
+    if (is_forwarded(request)) access.check(request, Scope::read);
+    return true;
+} catch (const Denied&) {
+    return false;
+}
+
+void replace_all(std::string& text, const std::string& from, const std::string& to) {
+    for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+        text.replace(at, from.size(), to);
+}
+
+/// The texts of /readyz without the folders of the store and of the worker program.
+std::string without_paths(std::string text, const Settings& settings) {
+    replace_all(text, settings.store.string(), "the store");
+    const std::string folder = settings.worker.parent_path().string();
+    if (!folder.empty()) replace_all(text, folder + "/", "");
+    return text;
+}
+
+HttpReply ready(Service& service, Access& access, HttpRequest& request) {
+    const bool with_paths = may_know_paths(access, request);
+    const auto shown = [&](const std::string& text) {
+        return with_paths ? text : without_paths(text, service.settings());
+    };
     const std::string wrong = service.not_ready();
-    if (!wrong.empty()) return problem(503, "not-ready", wrong).with("Retry-After", "5");
-    return json_reply(200, R"({"status":"ready"})");
+    if (!wrong.empty()) return problem(503, "not-ready", shown(wrong)).with("Retry-After", "5");
+    Json answer{{"status", "ready"}};
+    for (const std::string& warning : service.warnings()) answer["warnings"].push_back(shown(warning));
+    return json_reply(200, answer.dump());
 }
 
 HttpReply session(std::string cookie) {
@@ -60,7 +87,8 @@ bool flag_in_query(const HttpRequest& request, const std::string& name) {
 std::vector<Route> service_routes(Service& service, Access& access, Metrics& metrics) {
     return {
         {"GET", "/healthz", Scope::open, 0, [](HttpRequest&) { return json_reply(200, R"({"status":"alive"})"); }},
-        {"GET", "/readyz", Scope::open, 0, [&service](HttpRequest&) { return ready(service); }},
+        {"GET", "/readyz", Scope::open, 0,
+         [&service, &access](HttpRequest& request) { return ready(service, access, request); }},
         {"GET", "/version", Scope::open, 0, [](HttpRequest&) { return version(); }},
         {"GET", "/openapi.json", Scope::open, 0,
          [document = openapi()](HttpRequest& request) { return cached_json(request, document); }},

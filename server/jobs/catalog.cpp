@@ -78,7 +78,8 @@ Catalog::Added Catalog::add(const std::string& kind, const std::string& digest) 
 
 void Catalog::inspect(const std::string& kind, const std::string& digest) {
     if (!readers_.try_acquire_for(std::chrono::seconds(60)))
-        throw Refusal(Refused::busy, "too many files are being read; try again");
+        throw Refusal(Refused::busy, "the facts of " + std::to_string(most_readers) +
+                                         " files are being read, and no more are read at once; try again in 5 s");
     struct Release {
         std::counting_semaphore<2>& readers;
         ~Release() { readers.release(); }

@@ -41,7 +41,8 @@ private:
     Database& database_;
     BlobStore& store_;
     Runner& runner_;
-    std::counting_semaphore<2> readers_{2};
+    static constexpr int most_readers = 2;
+    std::counting_semaphore<most_readers> readers_{most_readers};
 };
 
 }  // namespace hairbake

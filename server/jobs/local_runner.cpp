@@ -54,6 +54,14 @@ public:
     posix_spawnattr_t attributes;
 };
 
+/// `error` is errno.
+[[noreturn]] void refuse_to_start(const fs::path& program, int error) {
+    throw Error(
+        ErrorKind::internal,
+        "the worker program " + program.string() + " cannot be started: " + std::generic_category().message(error), {},
+        error);
+}
+
 pid_t spawn(const RunnerSettings& settings, const fs::path& work_folder) {
     std::vector<std::string> words{settings.program.string(), "--memory=" + std::to_string(settings.memory_bytes),
                                    "--cpu=" + std::to_string(settings.cpu_seconds),
@@ -65,9 +73,7 @@ pid_t spawn(const RunnerSettings& settings, const fs::path& work_folder) {
     pid_t child = 0;
     const int error =
         ::posix_spawn(&child, settings.program.c_str(), &spawn.actions, &spawn.attributes, arguments.data(), environ);
-    if (error != 0)
-        throw Error(ErrorKind::internal,
-                    "the worker program cannot be started: " + std::generic_category().message(error), {}, error);
+    if (error != 0) refuse_to_start(settings.program, error);
     return child;
 }
 
@@ -117,10 +123,10 @@ public:
     }
 
     void check_ready() override {
-        if (::access(settings_.program.c_str(), X_OK) != 0)
-            throw Error(ErrorKind::internal,
-                        "the worker program cannot be started: " + std::generic_category().message(errno), {}, errno);
+        if (::access(settings_.program.c_str(), X_OK) != 0) refuse_to_start(settings_.program, errno);
     }
+
+    std::string program() const override { return settings_.program.string(); }
 
     bool survives_restart() const override { return false; }
 

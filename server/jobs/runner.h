@@ -47,6 +47,9 @@ public:
     /// Asks the worker to stop and returns at once. A worker that does not stop is killed some seconds later.
     virtual void stop(const std::string& handle) = 0;
 
+    /// What it starts, for messages.
+    virtual std::string program() const { return "hairbake-worker"; }
+
     /// Throws Error, saying why, when no task can be started at present.
     virtual void check_ready() = 0;
 

@@ -76,7 +76,7 @@ struct Service::Parts {
 
     /// During an upgrade the worker program may be away. The service starts all the same, to serve what is stored.
     void check_worker() try { runner->check_ready(); } catch (const Error& error) {
-        spdlog::warn("{}: {}; the queue is paused and tries again by itself", settings.worker.string(), error.what());
+        spdlog::warn("{}; the queue is paused and tries again by itself", error.what());
         queue.pause({}, error.what());
     }
 

@@ -36,8 +36,9 @@ Outcome trouble_with(const std::string& what, int error) {
     return {End::trouble, "{}", ErrorKind::out_of_resources, what + ": " + std::generic_category().message(error), {}};
 }
 
-/// `was_stopped`: on the caller's wish.
-Outcome conclude(const RunStatus& status, const WorkerWords& words, const WorkFolder& folder, bool was_stopped) {
+/// `program` is the worker's. `was_stopped`: on the caller's wish.
+Outcome conclude(const RunStatus& status, const WorkerWords& words, const WorkFolder& folder,
+                 const std::string& program, bool was_stopped) {
     if (status.state == State::exited && words.last_word() && !words.is_babbling())
         return outcome_of(*words.last_word(), was_stopped);
     if (was_stopped) return {End::cancelled, "{}", ErrorKind::cancelled, {}, {}};
@@ -51,7 +52,11 @@ Outcome conclude(const RunStatus& status, const WorkerWords& words, const WorkFo
     if (words.trouble()) return trouble_with("the worker's words cannot be read", words.trouble());
     if (const int error = error_of_folder(folder)) return trouble_with("the work folder is gone", error);
     if (!words.has_begun())
-        return {End::trouble, "{}", ErrorKind::internal, status.message + " before it reached its task", {}};
+        return {End::trouble,
+                "{}",
+                ErrorKind::internal,
+                status.message + " before it reached its task; its program is " + program,
+                {}};
     const std::string without = status.state == State::exited ? " without a result" : "";
     return {End::died, "{}", ErrorKind::internal, status.message + without, {}};
 }
@@ -75,7 +80,7 @@ Outcome follow_task(Runner& runner, const std::string& handle, const WorkFolder&
         if (status.state != State::running) {
             while (words.read_more()) {
             }
-            return conclude(status, words, folder, was_stopped);
+            return conclude(status, words, folder, runner.program(), was_stopped);
         }
         if (words.is_babbling()) runner.stop(handle);
         if (!more) sleep_until_next_poll(Clock::now() - begin);

@@ -73,14 +73,35 @@ Uploads::Uploads(Database& database, BlobStore& store, Room& room, fs::path fold
     make_folder(folder_);
 }
 
+/// For the budget: 0 when there is no file, or it cannot be looked at.
 std::uint64_t Uploads::size_on_disk(const std::string& id) const {
     std::error_code error;
     const std::uintmax_t bytes = fs::file_size(folder_ / id, error);
     return error ? 0 : bytes;
 }
 
-void Uploads::recover() {
-    FileCount unknown, removed;
+/// Throws Refusal(not_found) when there is no file.
+/// Throws as throw_store_error() when it cannot be looked at.
+std::uint64_t Uploads::offset_of(const std::string& id) const {
+    struct stat facts {};
+    const int error = ::stat((folder_ / id).c_str(), &facts) == 0 ? 0 : errno;
+    if (error == 0 && S_ISREG(facts.st_mode)) return static_cast<std::uint64_t>(facts.st_size);
+    if (error != 0 && kind_of_path(folder_ / id) == PathKind::unknown) throw_store_error(folder_ / id, error);
+    refuse_lost(folder_, id);
+}
+
+/// Whether the file is a second link to the file of a blob: a crash came after the upload had become one.
+bool Uploads::is_blob_file(const fs::path& file) const try {
+    if (fs::hard_link_count(file) < 2) return false;
+    const std::string digest = digest_of_file(file);
+    return store_.size_of(digest) && fs::equivalent(file, store_.path_of(digest));
+} catch (const std::exception&) {  // it cannot be read
+    return false;
+}
+
+/// Removes or moves away what is in the folder and has no row. What is no file has no place there, with a row or not.
+void Uploads::clear_unknown() {
+    FileCount unknown, empty, doubled;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
         bool known = false;
         database_.read([&](Sql& sql) {
@@ -158,8 +179,11 @@ void Uploads::check(std::uint64_t bytes, const std::string& sha256, const std::s
         own = static_cast<std::uint64_t>(mine.integer(1));
         all = static_cast<std::uint64_t>(sql.rows("SELECT sum(bytes) FROM uploads").at(0).integer(0));
     });
-    const auto refuse = [](Refused why, const std::string& found, std::uint64_t allowed, const std::string& unit) {
-        throw Refusal(why, found + "; allowed are " + std::to_string(allowed) + unit + ": finish some or delete them");
+    const auto refuse = [&](Refused why, const std::string& found, std::uint64_t allowed, const std::string& unit) {
+        const std::string when = why == Refused::too_many ? ", and try again in 60 s" : "";
+        throw Refusal(why, found + "; allowed are " + std::to_string(allowed) + unit + ": finish some or delete them" +
+                               when + "; one that receives nothing for " +
+                               std::to_string(static_cast<std::int64_t>(limits_.lifetime_s)) + " s ends by itself");
     };
     if (open >= limits_.most_open)
         refuse(Refused::too_many, "there are " + std::to_string(open) + " unfinished uploads of this token",

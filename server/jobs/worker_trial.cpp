@@ -15,11 +15,11 @@ constexpr std::chrono::seconds longest_trial{60};
 Outcome outcome(End end, const std::string& message) { return {end, "{}", ErrorKind::out_of_resources, message, {}}; }
 
 /// The worker made other keys than the daemon if it is of another version.
-Outcome check_version(const Outcome& trial) {
+Outcome check_version(const Outcome& trial, const std::string& program) {
     const auto facts = nlohmann::json::parse(trial.facts, nullptr, false);
     const auto found = facts.is_object() ? facts.value("versions", nlohmann::json()) : nlohmann::json();
     if (found == versions_text()) return trial;
-    return outcome(End::trouble, "the versions of the worker program are " + found.dump() +
+    return outcome(End::trouble, "the versions of the worker program " + program + " are " + found.dump() +
                                      "; allowed are those of the daemon, \"" + versions_text() +
                                      "\": start the daemon again");
 }
@@ -32,7 +32,7 @@ Outcome run_trial(Runner& runner, const std::filesystem::path& incoming, const s
     const auto wish_until = [&] { return Clock::now() > end ? Wish::stop : wish(); };
     Outcome trial =
         follow_task(runner, runner.start(folder.path()), folder, wish_until, [](std::string_view, double) {});
-    if (trial.end == End::done) return check_version(trial);
+    if (trial.end == End::done) return check_version(trial, runner.program());
     if (trial.end == End::cancelled && wish() != Wish::stop)
         return outcome(End::trouble, "it was not done after " + std::to_string(longest_trial.count()) + " seconds");
     return trial;

@@ -109,10 +109,9 @@ class Troubles(unittest.TestCase):
             hair = d.put(hair_bytes())
             d.program.unlink()
             bakes = d.post(hair, 100)
-            detail = d.wait_for_pause("the worker program cannot be started: No such file or directory")
-            self.assertNotIn(str(d.path), detail)  # anybody may ask /readyz
-            self.assertEqual(d.metric("hairbake_queue_paused"), [
-                'hairbake_queue_paused{reason="the worker program cannot be started: No such file or directory"} 1'])
+            missing = f"the worker program {d.program} cannot be started: No such file or directory"
+            d.wait_for_pause(missing)
+            self.assertEqual(d.metric("hairbake_queue_paused"), [f'hairbake_queue_paused{{reason="{missing}"}} 1'])
             last = d.ask("GET", f"/v1/bakes/{bakes[-1]}").json  # it was not tried yet
             self.assertIn("cannot be started", last["stages"][0]["trouble"])
             time.sleep(4)
@@ -121,6 +120,20 @@ class Troubles(unittest.TestCase):
             d.heal()
             self.assert_all_done(d, bakes)
             self.assert_over(d)
+
+    def test_only_callers_with_a_token_or_of_this_machine_learn_where_files_are(self):
+        """Of /readyz, which anybody may ask through nginx."""
+        token = "a" * 43
+        tokens = f'[[token]]\nname = "farm"\nsha256 = "{sha256(token.encode())}"\nscopes = ["read"]\n'
+        forwarded = {"X-Forwarded-For": "192.0.2.1"}
+        with Queue(tokens=tokens) as d:
+            d.program.unlink()
+            for headers, told in ((forwarded, False), ({**forwarded, "Authorization": f"Bearer {token}"}, True), ({}, True)):
+                ready = d.ask("GET", "/readyz", headers=headers)
+                self.assertEqual(ready.status, 503)
+                self.assertIn("the worker program ", ready.json["detail"])
+                self.assertIn("worker cannot be started: No such file or directory", ready.json["detail"])
+                self.assertEqual(str(d.path) in ready.json["detail"], told, headers)
 
     def test_a_daemon_that_says_that_it_listens_has_all_its_threads(self):
         """So a shortage that comes later cannot end it."""
@@ -155,7 +168,7 @@ class Troubles(unittest.TestCase):
                         d.stop()
                         (d.path / "log").write_text("")
                         d.start()
-                        d.wait_for_log(f"{d.program}: the worker program cannot be started: {word}")
+                        d.wait_for_log(f"the worker program {d.program} cannot be started: {word}")
                         self.assertEqual(d.ask("GET", f"/v1/blobs/{hair}").body, data)
                         self.assertEqual(d.ask("GET", "/readyz").status, 503)
                         if not queued:
@@ -324,7 +337,8 @@ class Troubles(unittest.TestCase):
 *) "{real}" "$folder"; sed -i 's/"key": "[0-9a-f]*"/"key": "other"/' "$folder/result/manifest.json" ;;""")
             bakes = d.post(d.put(hair_bytes()), 3)
             detail = d.wait_for_pause("start the daemon again")
-            self.assertIn('the versions of the worker program are "transmittance 1"; allowed are those of the daemon', detail)
+            self.assertIn(f'the versions of the worker program {d.program} are "transmittance 1"; allowed are those of the '
+                          "daemon", detail)
             d.heal()
             self.assert_all_done(d, bakes)
             self.assert_over(d)
