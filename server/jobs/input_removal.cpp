@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "core/base/short_text.h"
 #include "server/store/blob_store.h"
 #include "server/store/database.h"
 #include "server/store/eviction.h"
@@ -85,6 +86,22 @@ std::string kind_of(Sql& sql, const std::string& column, const std::string& dige
     return rows.empty() ? std::string() : rows[0].text(0);
 }
 
+/// "is stored as the kind model; DELETE /v1/models/DIGEST deletes it"; `kind` "mesh" is a file that was sent only.
+std::string stored_as(const std::string& kind, const std::string& digest) {
+    return "is stored as the kind " + kind + "; DELETE /v1/" + (kind == "mesh" ? "blobs" : kind + "s") + "/" + digest +
+           " deletes it";
+}
+
+/// Says where the file is, if it is stored as something else.
+[[noreturn]] void refuse_unknown(Sql& sql, const std::string& kind, const std::string& digest) {
+    const std::string found = "there is no " + kind + " " + shortened(digest, 64);
+    const std::string other = kind_of(sql, "sha256", digest);
+    const bool is_sent = any(sql, "SELECT 1 FROM sent_blobs WHERE sha256 = ?", {digest});
+    if (other.empty() && !is_sent) throw Refusal(Refused::not_found, found);
+    throw Refusal(Refused::not_found, found + "; the file " + stored_as(other.empty() ? "mesh" : other, digest),
+                  "kind");
+}
+
 /// Without its entry of the kind, a model's or environment's blob is needed for something else.
 bool is_needed_elsewhere(Sql& sql, const std::string& kind, const std::string& digest) {
     return !kind_of(sql, "sha256", digest).empty() || !kind_of(sql, "thumbnail", digest).empty() ||
@@ -101,38 +118,39 @@ void forget_sent(Sql& sql, const std::string& digest, std::vector<std::string>& 
 
 }  // namespace
 
-void remove_input(Database& database, BlobStore& store, const std::string& kind, const std::string& digest,
-                  bool force) {
-    const auto held = database.lock();  // nothing may refer to the blobs between the two transactions
-    std::vector<std::string> gone;
-    database.write([&](Sql& sql) {
-        const auto rows = sql.rows("SELECT thumbnail FROM inputs WHERE kind = ? AND sha256 = ?", {kind, digest});
-        if (rows.empty()) throw Refusal(Refused::not_found, "there is no " + kind + " " + digest.substr(0, 64));
-        refuse_if_needed(sql, kind, digest, force);
-        sql.run("DELETE FROM inputs WHERE kind = ? AND sha256 = ?", {kind, digest});
-        if (!is_needed_elsewhere(sql, kind, digest)) forget_sent(sql, digest, gone);
-        if (!rows[0].null(0) && is_unneeded(sql, rows[0].text(0))) gone.push_back(rows[0].text(0));
-    });
-    if (!gone.empty()) store.remove(gone, "the " + kind + " was deleted on request");
+void remove_input(BlobStore& store, const std::string& kind, const std::string& digest, bool force) {
+    store.remove(
+        [&](Sql& sql) {
+            std::vector<std::string> gone;
+            const auto rows = sql.rows("SELECT thumbnail FROM inputs WHERE kind = ? AND sha256 = ?", {kind, digest});
+            if (rows.empty()) refuse_unknown(sql, kind, digest);
+            refuse_if_needed(sql, kind, digest, force);
+            sql.run("DELETE FROM inputs WHERE kind = ? AND sha256 = ?", {kind, digest});
+            if (!is_needed_elsewhere(sql, kind, digest)) forget_sent(sql, digest, gone);
+            if (!rows[0].null(0) && is_unneeded(sql, rows[0].text(0))) gone.push_back(rows[0].text(0));
+            return gone;
+        },
+        "the " + kind + " was deleted on request");
 }
 
-void remove_blob(Database& database, BlobStore& store, const std::string& digest, bool force) {
-    const auto held = database.lock();
-    std::vector<std::string> gone;
-    database.write([&](Sql& sql) {
-        if (!any(sql, "SELECT 1 FROM blobs WHERE sha256 = ?", {digest}))
-            throw Refusal(Refused::not_found, "there is no blob " + digest.substr(0, 64));
-        if (const std::string kind = kind_of(sql, "sha256", digest); !kind.empty())
-            throw Refusal(Refused::conflict,
-                          "the file is a stored " + kind + "; DELETE /v1/" + kind + "s/" + digest + " deletes it");
-        if (const std::string kind = kind_of(sql, "thumbnail", digest); !kind.empty())
-            throw Refusal(Refused::conflict, "the file is the thumbnail of a stored " + kind + ", and goes with it");
-        refuse_if_needed(sql, "file", digest, force);
-        if (is_result(sql, digest) && !any(sql, "SELECT 1 FROM sent_blobs WHERE sha256 = ?", {digest}))
-            throw Refusal(Refused::conflict, "the file is a result; results are removed when the store needs room");
-        forget_sent(sql, digest, gone);
-    });
-    if (!gone.empty()) store.remove(gone, "the file was deleted on request");
+void remove_blob(BlobStore& store, const std::string& digest, bool force) {
+    store.remove(
+        [&](Sql& sql) {
+            std::vector<std::string> gone;
+            if (!any(sql, "SELECT 1 FROM blobs WHERE sha256 = ?", {digest}))
+                throw Refusal(Refused::not_found, "there is no blob " + shortened(digest, 64));
+            if (const std::string kind = kind_of(sql, "sha256", digest); !kind.empty())
+                throw Refusal(Refused::conflict, "the file " + stored_as(kind, digest), "kind");
+            if (const std::string kind = kind_of(sql, "thumbnail", digest); !kind.empty())
+                throw Refusal(Refused::conflict,
+                              "the file is the thumbnail of a stored " + kind + ", and goes with it");
+            refuse_if_needed(sql, "file", digest, force);
+            if (is_result(sql, digest) && !any(sql, "SELECT 1 FROM sent_blobs WHERE sha256 = ?", {digest}))
+                throw Refusal(Refused::conflict, "the file is a result; results are removed when the store needs room");
+            forget_sent(sql, digest, gone);
+            return gone;
+        },
+        "the file was deleted on request");
 }
 
 }  // namespace hairbake

@@ -142,15 +142,30 @@ Json Server::json(const std::string& method, const std::string& path, const std:
     return parse_json(answer.body);
 }
 
+namespace {
+
+/// What the flags of `hairbake delete` can do about a refused deletion.
+std::string deletion_hint(const std::string& field, const std::string& words) {
+    if (field == "force") return "\n--force deletes it all the same";
+    if (field != "kind") return {};
+    for (const auto& [address, kind] : {std::pair("DELETE /v1/models/", "model"),
+                                        {"DELETE /v1/environments/", "environment"},
+                                        {"DELETE /v1/blobs/", "mesh"}})
+        if (words.find(address) != std::string::npos) return std::string("\n--as ") + kind + " deletes it";
+    return {};
+}
+
+}  // namespace
+
 void refuse(const HttpAnswer& answer) {
     const Json problem = problem_of(answer);
     const std::string field = plain(text_in(problem, "field"));
     std::string words = plain(words_of(answer));
     if (!field.empty() && words.find(field) == std::string::npos) words = field + ": " + words;
-    throw RemoteError(ExitCode::refused,
-                      "the server refuses: " + words + advice(answer.status) + needed_by(problem) +
-                          (field == "force" ? "\n--force deletes it all the same" : ""),
-                      field);
+    throw RemoteError(
+        ExitCode::refused,
+        "the server refuses: " + words + advice(answer.status) + needed_by(problem) + deletion_hint(field, words),
+        field);
 }
 
 Json parse_json(const std::string& text) {

@@ -275,15 +275,24 @@ def upload(client: Client, arguments: Arguments, display: Display) -> None:
         display.line(f"{reference} {file}", "stored", file=file, reference=reference)
 
 
+def deletion_hint(refused: Refused) -> str:
+    """What the flags of `delete` can do about a refused deletion."""
+    if refused.field == "force":
+        return "--force deletes it all the same"
+    kinds = {"models": "model", "environments": "environment", "blobs": "mesh"} if refused.field == "kind" else {}
+    return next((f"--as {kind} deletes it" for place, kind in kinds.items()
+                 if f"DELETE /v1/{place}/" in str(refused)), "")
+
+
 def delete(client: Client, arguments: Arguments, display: Display) -> None:
     for reference in arguments.input:
         try:
             client.delete(reference, arguments.kind, arguments.force)
         except Refused as refused:
-            if refused.field != "force":
+            hint = deletion_hint(refused)
+            if not hint:
                 raise
-            raise Refused(f"{refused}\n--force deletes it all the same", "force", refused.status,
-                          refused.needed_by) from None
+            raise Refused(f"{refused}\n{hint}", refused.field, refused.status, refused.needed_by) from None
         display.line(f"{reference} deleted", "deleted", reference=reference)
 
 

@@ -6,6 +6,7 @@ import signal
 import socket
 import subprocess
 import unittest
+from pathlib import Path
 
 from rig import (PROGRAMS, QUICK, LastingDaemon, Liar, Proxy, TcpLiar, Workshop, first_word, sha256, tls_of_localhost,
                  until)
@@ -217,6 +218,23 @@ class Jobs:
         self.assertEqual(daemon.ask("GET", f"/v1/bakes/{bake}").json["state"], "done")
         for words, code in ((["delete", "sha256:12"], 2), (["delete", "sha256:" + "0" * 64], 7)):
             self.run_failing(code, *words, url=daemon.url)
+
+    def test_a_refused_delete_says_which_kind_to_name(self):
+        """Fault: without --as, the refusal named an address of the service, and no flag. Relatives: the wrong kind."""
+        daemon = self.daemon()
+        mesh = self.shop.write("head.obj", b"v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nf 1 2 3\n")
+        self.run_ok("upload", self.hair, "--as", "model", url=daemon.url)
+        self.run_ok("upload", self.sky, "--as", "environment", url=daemon.url)
+        self.run_ok("upload", mesh, url=daemon.url)
+        def reference_of(file):
+            return "sha256:" + sha256(Path(file).read_bytes())
+
+        for file, wrong, right in ((self.hair, [], "model"), (self.hair, ["--as", "environment"], "model"),
+                                   (self.sky, ["--as", "mesh"], "environment"), (mesh, ["--as", "model"], "mesh")):
+            err = self.run_failing(7, "delete", reference_of(file), *wrong, url=daemon.url).err
+            self.assertIn(f"--as {right} deletes it", [text.strip() for text in err.splitlines()])
+        for file, kind in ((self.hair, "model"), (self.sky, "environment"), (mesh, "mesh")):
+            self.run_ok("delete", reference_of(file), "--as", kind, url=daemon.url)
 
 
 class Refusals:
