@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
@@ -16,6 +17,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <thread>
 
 #include "core/base/digest.h"
@@ -43,7 +45,8 @@ hairbaked store accept [--config FILE]
                             move to lost+found at the next start
 hairbaked token new         print a new token and the lines for the configuration
 hairbaked routes            print the routes: method, address, scope, limit of the body in bytes, media types
-hairbaked --version
+hairbaked --version         print the version
+hairbaked --help            print this text
 )";
 
 /// A log message, escaped for a JSON string.
@@ -247,11 +250,18 @@ int serve(const Settings& settings) {
     return 0;
 }
 
+/// Also after other words: "hairbaked store accept --help".
+bool asks_for_help(int argc, char** argv) {
+    return std::any_of(argv + 1, argv + argc,
+                       [](const std::string_view word) { return word == "--help" || word == "-h"; });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     set_up_log();
     try {
+        if (argc > 1 && asks_for_help(argc, argv)) return std::fputs(usage, stdout) < 0 ? 1 : 0;
         const std::string first = argc > 1 ? argv[1] : "";
         if (argc == 3 && first == "token" && !std::strcmp(argv[2], "new")) return print_new_token();
         if (argc == 2 && first == "routes") return print_routes();

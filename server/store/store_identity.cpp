@@ -78,7 +78,10 @@ StoreIdentity::StoreIdentity(fs::path folder, Database& database, const std::str
     });
     if (!expected_id.empty() && row.id != expected_id)
         throw Error(ErrorKind::bad_input, "the database in " + folder_.string() + " is of the store " + row.id +
-                                              "; allowed is " + expected_id + " ([store] id)" + is_untouched);
+                                              "; allowed is " + expected_id + " ([store] id)" + is_untouched +
+                                              "Does [store] folder name the right folder, and is its disk mounted? To "
+                                              "serve this store, set id to " +
+                                              row.id + " or remove it");
     compare(row);
     id_ = row.id;
     const std::optional<Mark> mark = read_mark(folder_);
