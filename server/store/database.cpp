@@ -204,6 +204,16 @@ void throw_if_system_failed(const std::string& name, const SQLite::Exception& er
 
 Database::Database(const std::filesystem::path& file, DatabaseHooks hooks) : hooks_(std::move(hooks)) {
     check_files(file);
+    try {
+        open(file);
+    } catch (...) {
+        reader_.reset();
+        remove_unused_log(file);
+        throw;
+    }
+}
+
+void Database::open(const std::filesystem::path& file) {
     const std::string name = "the database " + file.string();
     const std::string advice = std::string(". Nothing was removed. ") + advice_for_broken_database;
     const auto attempt = [&](const std::function<void()>& step) {
@@ -235,9 +245,21 @@ Database::Database(const std::filesystem::path& file, DatabaseHooks hooks) : hoo
 Database::~Database() {
     try {
         check_in_place();
-        writer_->let_close_change_files(version_ > 0);  // 0: the start was stopped
-    } catch (const std::exception&) {                   // the files stay as they are
+        if (version_ > 0)
+            writer_->let_close_change_files(true);
+        else  // the start was stopped
+            remove_unused_log(writer_->database.getFilename());
+    } catch (const std::exception&) {  // the files stay as they are
     }
+}
+
+/// Reading a database makes an empty -wal and a -shm beside it. Lets SQLite delete them when the writer closes: nothing
+/// is written into the database then.
+void Database::remove_unused_log(const std::filesystem::path& file) {
+    std::error_code missing;
+    const std::filesystem::path real = std::filesystem::canonical(file, missing);
+    const std::uintmax_t logged = std::filesystem::file_size(real.string() + "-wal", missing);
+    if (writer_ && !missing && logged == 0) writer_->let_close_change_files(true);
 }
 
 void Database::check_in_place() const {

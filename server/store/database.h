@@ -73,7 +73,7 @@ class Database {
 public:
     /// Opens or makes `file` and its tables; brings a database of an earlier version to this one.
     /// Throws Error(bad_input), telling what to do, when the file is no database of the service, broken, of a later
-    /// version, or may not be read and written.
+    /// version, or may not be read and written. It leaves no file behind that was not there before.
     /// Throws Error(out_of_resources) when memory or disk are short.
     explicit Database(const std::filesystem::path& file, DatabaseHooks hooks = {});
     ~Database();
@@ -97,6 +97,9 @@ public:
 
 private:
     class Connection;
+    void open(const std::filesystem::path& file);
+    void remove_unused_log(const std::filesystem::path& file);
+
     std::recursive_mutex writing_, reading_;  ///< taken in this order
     const DatabaseHooks hooks_;
     std::unique_ptr<Connection> writer_, reader_;
