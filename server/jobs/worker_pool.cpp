@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -112,6 +113,8 @@ void WorkerPool::run_to_the_end(const ClaimedStage& stage) {
                                 [&] { return queue_.stopping() || *stage.cancel ? Wish::stop : Wish::go_on; });
     spdlog::info("stage {} {} attempt {}: {}", stage.kind, stage.key.substr(0, 12), stage.attempt, log_text(outcome));
     if (outcome.end == End::trouble) queue_.pause(stage.key, outcome.message);
+    if (outcome.end != End::trouble) forget_result(stage);
+    if (outcome.end == End::trouble && is_full_disk(outcome)) note_full_disk(stage);
     for (;;) try {
             return record(stage, outcome);
         } catch (const std::exception& error) {
@@ -204,6 +207,7 @@ Outcome WorkerPool::run(const ClaimedStage& stage) {
         fs::path path{};
         ~Leftover() { pool.note_leftover(path); }
     } leftover{*this};
+    if (!stage.started) check_known_result(stage);
     auto folder = stage.started ? std::make_unique<WorkFolder>(store_.incoming_folder() / stage.started->folder)
                                 : std::make_unique<WorkFolder>(store_.incoming_folder(), task_for(stage));
     leftover.path = folder->path();

@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -50,8 +52,20 @@ private:
     // worker_pool_results.cpp
     void remove_spoiled_inputs(const std::vector<std::string>& digests);
     std::string checked_manifest(const ClaimedStage& stage, const std::filesystem::path& folder);
-    void check_fits(const std::vector<StageFile>& files, const std::filesystem::path& folder);
-    std::uint64_t new_bytes(const std::vector<StageFile>& files, const std::filesystem::path& folder);
+    using Sizes = std::map<std::string, std::uint64_t>;  ///< of files, in bytes, by digest: equal files are one blob
+    /// What is known of a result that found no room.
+    struct Waiting {
+        Sizes sizes;                             ///< the budget had no room; empty: the disk had none
+        std::optional<std::uint64_t> disk_free;  ///< bytes, when the disk had no room
+    };
+    void check_fits(const ClaimedStage& stage, const Sizes& sizes);
+    std::uint64_t new_bytes(const Sizes& sizes);
+    std::uint64_t bytes_beside(const ClaimedStage& stage, const Sizes& sizes);
+    void check_known_result(const ClaimedStage& stage);
+    void make_room(const ClaimedStage& stage, const Sizes& sizes);
+    void note_full_disk(const ClaimedStage& stage);
+    void remember(const ClaimedStage& stage, Waiting waiting);
+    void forget_result(const ClaimedStage& stage);
     void store_result(const ClaimedStage& stage, std::unique_ptr<WorkFolder> work);
 
     Queue& queue_;
@@ -62,6 +76,7 @@ private:
     const WorkerPoolSettings settings_;
     std::mutex mutex_;
     std::vector<std::filesystem::path> leftovers_;  ///< work folders that could not be removed; guarded by mutex_
+    std::map<std::string, Waiting> waiting_;        ///< by stage; guarded by mutex_
     std::vector<std::jthread> threads_;
 };
 

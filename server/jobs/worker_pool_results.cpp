@@ -5,6 +5,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <system_error>
+#include <utility>
 
 #include "core/base/digest.h"
 #include "core/base/error.h"
@@ -15,6 +16,8 @@
 #include "server/jobs/worker_pool.h"
 #include "server/store/blob_store.h"
 #include "server/store/database.h"
+#include "server/store/file_system.h"
+#include "server/store/refusal.h"
 #include "server/store/room.h"
 
 namespace hairbake {
@@ -22,6 +25,8 @@ namespace fs = std::filesystem;
 namespace {
 
 using Json = nlohmann::ordered_json;
+constexpr std::size_t most_remembered = 1000;        // results that found no room
+constexpr std::uint64_t least_growth = 64 << 10;     // of the free bytes of a disk; the database takes and gives less
 constexpr std::size_t longest_manifest = 512 << 10;  // bytes; the longest ones have some 50 kB
 
 /// A missing file in a folder that is there has not its digest, nor has a folder or a pipe.
@@ -79,24 +84,105 @@ std::string WorkerPool::checked_manifest(const ClaimedStage& stage, const fs::pa
     return text;
 }
 
-/// Throws ResultTooLarge when the whole budget is less than the result.
-void WorkerPool::check_fits(const std::vector<StageFile>& files, const fs::path& folder) {
-    std::map<std::string, std::uint64_t> sizes;  // by digest: equal files are one blob
-    for (const StageFile& file : files) sizes[file.sha256] = fs::file_size(folder / file.name);
+/// Bytes of what must be stored beside the result until the stage's bakes end: of one bake the inputs and the results of
+/// its stages that are done. Of several bakes the smallest sum counts.
+std::uint64_t WorkerPool::bytes_beside(const ClaimedStage& stage, const Sizes& sizes) {
+    Json result = Json::array();
+    for (const auto& [digest, size] : sizes) result.push_back(digest);
+    std::uint64_t bytes = 0;
+    database_.read([&](Sql& sql) {
+        const auto rows = sql.rows(
+            "SELECT coalesce(sum(bytes), 0) AS beside FROM (SELECT DISTINCT n.bake, bl.sha256, bl.bytes FROM "
+            "(SELECT m.bake FROM bake_stages m JOIN bakes b ON b.seq = m.bake WHERE m.stage = ?1 AND b.state IN "
+            "('queued', 'running')) n JOIN bake_stages s ON s.bake = n.bake JOIN blobs bl ON bl.sha256 IN ("
+            "SELECT i.sha256 FROM stage_inputs i WHERE i.stage = s.stage UNION SELECT f.sha256 FROM stage_files f JOIN "
+            "stages d ON d.key = f.stage WHERE f.stage = s.stage AND d.state = 'done') WHERE bl.sha256 NOT IN "
+            "(SELECT value FROM json_each(?2))) GROUP BY bake ORDER BY beside LIMIT 1",
+            {stage.key, result.dump()});
+        if (!rows.empty()) bytes = static_cast<std::uint64_t>(rows[0].integer(0));
+    });
+    return bytes;
+}
+
+/// Throws ResultTooLarge when the whole budget is less than the result, or less than the result and what its bake needs
+/// beside it.
+void WorkerPool::check_fits(const ClaimedStage& stage, const Sizes& sizes) {
     std::uint64_t bytes = 0;
     for (const auto& [digest, size] : sizes) bytes += size;
-    if (bytes > room_.budget())
-        throw ResultTooLarge("the result of " + std::to_string(bytes) +
-                             " bytes is larger than the whole store may be: " + "budget_mb is " +
-                             std::to_string(room_.budget() >> 20) + "; ask for a smaller result, or raise budget_mb");
+    const std::uint64_t budget = room_.budget();
+    const auto refuse = [&](const std::string& found) {
+        throw ResultTooLarge(found + ": budget_mb is " + std::to_string(budget >> 20) +
+                             "; ask for a smaller result, or "
+                             "raise budget_mb");
+    };
+    const std::string result = "the result of " + std::to_string(bytes) + " bytes";
+    if (bytes > budget) refuse(result + " is larger than the whole store may be");
+    if (room_.fits(new_bytes(sizes))) return;
+    const std::uint64_t beside = bytes_beside(stage, sizes);
+    if (bytes + beside > budget)
+        refuse(result + ", and inputs and other results of the same bake of " + std::to_string(beside) +
+               " bytes, are together " + std::to_string(bytes + beside) + " bytes, more than the whole store may be");
 }
 
 /// Bytes by which the store grows with a result.
-std::uint64_t WorkerPool::new_bytes(const std::vector<StageFile>& files, const fs::path& folder) {
+std::uint64_t WorkerPool::new_bytes(const Sizes& sizes) {
     std::uint64_t bytes = 0;
-    for (const StageFile& file : files)
-        if (!store_.size_of(file.sha256)) bytes += fs::file_size(folder / file.name);
+    for (const auto& [digest, size] : sizes)
+        if (!store_.size_of(digest)) bytes += size;
     return bytes;
+}
+
+/// A stage whose result found no room is not baked again before there is room for it.
+/// Throws ResultTooLarge.
+/// Throws Refusal(full or busy).
+/// Throws Error(out_of_resources) while the disk has no more free than when the result found no room.
+void WorkerPool::check_known_result(const ClaimedStage& stage) {
+    Waiting known;
+    {
+        const std::lock_guard lock(mutex_);
+        const auto found = waiting_.find(stage.key);
+        if (found == waiting_.end()) return;
+        known = found->second;
+    }
+    if (known.disk_free && room_.disk_free() < *known.disk_free + least_growth)
+        throw_store_error(store_.incoming_folder() / "result", ENOSPC);
+    if (!known.sizes.empty()) {
+        check_fits(stage, known.sizes);
+        room_.require_room(new_bytes(known.sizes));
+    }
+    remember(stage, {known.sizes, std::nullopt});
+}
+
+void WorkerPool::make_room(const ClaimedStage& stage, const Sizes& sizes) {
+    try {
+        room_.make_room(new_bytes(sizes));
+    } catch (const Refusal&) {
+        remember(stage, {sizes, std::nullopt});
+        throw;
+    }
+}
+
+/// The worker's files are removed already. A number that is known stays: then nothing was baked.
+void WorkerPool::note_full_disk(const ClaimedStage& stage) try {
+    const std::uint64_t free = room_.disk_free();
+    Waiting known;
+    {
+        const std::lock_guard lock(mutex_);
+        if (const auto found = waiting_.find(stage.key); found != waiting_.end()) known = found->second;
+    }
+    if (!known.disk_free) remember(stage, {known.sizes, free});
+} catch (const Error&) {  // the disk cannot be looked at: the stage is baked again
+}
+
+void WorkerPool::remember(const ClaimedStage& stage, Waiting waiting) {
+    const std::lock_guard lock(mutex_);
+    if (waiting_.size() >= most_remembered) waiting_.clear();  // they are of cancelled bakes; the price is one bake
+    waiting_[stage.key] = std::move(waiting);
+}
+
+void WorkerPool::forget_result(const ClaimedStage& stage) {
+    const std::lock_guard lock(mutex_);
+    waiting_.erase(stage.key);
 }
 
 /// A worker is not believed: key and digests are checked before its files become blobs.
@@ -106,15 +192,17 @@ void WorkerPool::store_result(const ClaimedStage& stage, std::unique_ptr<WorkFol
     const std::string manifest = checked_manifest(stage, folder);
     const Json described = Json::parse(manifest);
     std::vector<StageFile> files;
+    Sizes sizes;
     for (const Json& entry : described.at("files")) {
         const std::string name = entry.at("name").get<std::string>(), digest = entry.at("sha256").get<std::string>();
         if (name.find('/') != std::string::npos || is_link(folder / name) || !has_its_digest(folder / name, digest))
             throw WrongResult("the worker's file " + name + " is not as its manifest describes it");
         files.push_back({name, digest, entry.at("bytes").get<std::uint64_t>()});
+        sizes[digest] = fs::file_size(folder / name);
     }
-    check_fits(files, folder);
+    check_fits(stage, sizes);
     const auto held = database_.lock();  // no eviction may come between the blobs and the rows that refer to them
-    room_.make_room(new_bytes(files, folder));
+    make_room(stage, sizes);
     for (const StageFile& file : files) store_.adopt(folder / file.name, file.sha256, Origin::made);
     work.reset();  // before anybody learns that the stage is done
     queue_.done(stage, files, manifest);

@@ -160,8 +160,20 @@ std::uint64_t Room::others() const {
 void Room::make_room(std::uint64_t bytes) { make_room(bytes, {}); }
 
 void Room::make_room(std::uint64_t bytes, const Counters& own) {
-    if (excess(others() + bytes) == 0) return;
+    if (fits(bytes)) return;
     const auto held = database_.lock();
+    const std::uint64_t more = require_room(bytes, own);
+    evict(database_, store_, limits_.budget, more);
+}
+
+void Room::require_room(std::uint64_t bytes) {
+    if (fits(bytes)) return;
+    const auto held = database_.lock();
+    require_room(bytes, {});
+}
+
+/// With database_.lock() held. Returns what counts beside blobs: `bytes`, bodies under way and unfinished uploads.
+std::uint64_t Room::require_room(std::uint64_t bytes, const Counters& own) {
     std::uint64_t more = bytes, under_way = 0;
     {
         const std::lock_guard lock(mutex_);
@@ -169,7 +181,7 @@ void Room::make_room(std::uint64_t bytes, const Counters& own) {
         under_way = counters_.received - own.received;
     }
     require_evictable(excess(more), bytes, under_way);
-    evict(database_, store_, limits_.budget, more);
+    return more;
 }
 
 void Room::trim() { evict(database_, store_, limits_.budget, others()); }
