@@ -227,7 +227,7 @@ class OtherDatabase(StoreTest):
             d.start()
             self.assertEqual(d.lost_and_found(), {sha256(late): late, upload: b"a late"})
             self.assertFalse((d.store / "uploads" / empty).exists())
-            self.assertIn("removed 1 files of 0 bytes: uploads without a row", d.log)
+            self.assertIn("removed 1 files of 0 bytes: empty uploads that the database does not know", d.log)
             self.assert_serves_all(d)
 
     def test_the_database_of_another_store_stops_the_start_of_both(self):
