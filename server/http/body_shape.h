@@ -11,8 +11,8 @@ namespace hairbake {
 /// where the schema names it, so the values of a body that passes take a few times its bytes, and are nested no deeper
 /// than the schema. Thread-safe.
 /// Throws Refusal(malformed) when it is no JSON, or not in UTF-8.
-/// Throws Refusal(unprocessable) naming the field, what was found and what is allowed; also for a text or number of more
-/// than 32 KiB.
+/// Throws Refusal(unprocessable) naming the field, what was found and what is allowed; also for a text or number of
+/// more than 32 KiB.
 void check_shape(const std::string& text, const nlohmann::json& schema);
 
 }  // namespace hairbake

@@ -52,8 +52,8 @@ public:
         if (!in_head_ && std::exchange(client_waits_, false) && !send_continue()) return -1;
         return connection_.read(data, size);
     }
-    /// `client_waits`: it sends its body only after a reply "100 Continue". The reply goes out when the body is read for
-    /// the first time, so a request that is refused by its head gets its refusal alone.
+    /// `client_waits`: it sends its body only after a reply "100 Continue". The reply goes out when the body is read
+    /// for the first time, so a request that is refused by its head gets its refusal alone.
     void end_head(bool client_waits) {
         in_head_ = false;
         client_waits_ = client_waits;

@@ -72,8 +72,7 @@ HttpReply add_input(Service& service, JsonBodies& bodies, HttpRequest& request, 
     std::string digest;
     if (type.starts_with("application/json")) {
         const std::string allowed = "; allowed is a Content-Length of up to " + std::to_string(json_limit) + " bytes";
-        if (!request.content_length)
-            throw Refusal(Refused::too_large, "the JSON body comes in chunks" + allowed);
+        if (!request.content_length) throw Refusal(Refused::too_large, "the JSON body comes in chunks" + allowed);
         if (*request.content_length > json_limit)
             throw Refusal(Refused::too_large,
                           "the JSON body is " + std::to_string(*request.content_length) + " bytes long" + allowed);

@@ -15,7 +15,8 @@ class StoreIdentity;
 class Uploads;
 
 /// A thread that, once a minute, records the uses of blobs and the store's generation, removes expired uploads and old
-/// failed bakes, keeps the store within its budget, and fills the reserve. Old failed bakes are removed by the constructor, too.
+/// failed bakes, keeps the store within its budget, and fills the reserve. Old failed bakes are removed by the
+/// constructor, too.
 class Maintenance {
 public:
     /// `keep_failed_s`: how long failed and cancelled bakes are kept.

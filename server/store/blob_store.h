@@ -83,8 +83,8 @@ public:
     ///
     /// Removes the bodies and work folders in tmp/ but those in `spared`, and files of blobs whose removal was
     /// committed.
-    /// Moves other files without a row, files of another size, and what is no file to lost+found. Forgets rows without a
-    /// whole file and returns them; Queue::recover() updates what refers to them.
+    /// Moves other files without a row, files of another size, and what is no file to lost+found. Forgets rows without
+    /// a whole file and returns them; Queue::recover() updates what refers to them.
     /// Throws Error(bad_input), and changes nothing, when no blob has a file and not `may_miss_all`.
     LostBlobs recover(const std::set<std::string>& spared = {}, bool may_miss_all = false);
 

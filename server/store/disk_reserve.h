@@ -23,8 +23,8 @@ public:
     /// are ignored: without a reserve a deletion on a full disk may be refused.
     void fill();
 
-    /// Runs `deletion`; if the disk is full, frees the reserve and runs it again. `deletion` leaves nothing half done when
-    /// it throws.
+    /// Runs `deletion`; if the disk is full, frees the reserve and runs it again. `deletion` leaves nothing half done
+    /// when it throws.
     /// Throws what `deletion` throws. For a disk that is full all the same the message says that nothing was changed.
     void run(const std::function<void()>& deletion);
 

@@ -12,8 +12,8 @@ namespace hairbake {
 namespace fs = std::filesystem;
 namespace {
 
-/// What keeps this process from `path`: the uppermost folder that it may not search, or else `path` or its folder. A link
-/// at `path` is followed once.
+/// What keeps this process from `path`: the uppermost folder that it may not search, or else `path` or its folder. A
+/// link at `path` is followed once.
 fs::path closed_at(const fs::path& named) {
     std::error_code no_link;
     const fs::path target = fs::read_symlink(named, no_link);

@@ -117,8 +117,8 @@ TEST_F(BodyShape, EndsAtTheFirstErrorAndNamesItsPlace) {
     EXPECT_EQ(refused(R"({"list": [[)" + many + "]]}"), "list[0]");  // without maxItems: 64
 }
 
-/// Fault: the refusal named no field. Relatives: a name of a field, an item of a list, the body itself, nesting, and bytes
-/// that are no UTF-8.
+/// Fault: the refusal named no field. Relatives: a name of a field, an item of a list, the body itself, nesting, and
+/// bytes that are no UTF-8.
 TEST_F(BodyShape, NamesThePlaceOfWhatItDoesNotParse) {
     const std::string large(40'000, '1');
     for (const auto& [text, words] :
