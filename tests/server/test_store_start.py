@@ -15,9 +15,9 @@ from harness import PATIENCE, PROGRAMS, TUS, Daemon, hair_bytes, hdr_bytes, quic
 
 
 def files_below(folder):
-    """Path inside of the folder -> bytes, of every file of the store but lock, id and database."""
+    """Path inside of the folder -> bytes, of every file of the store but lock, id, reserve and database."""
     return {str(file.relative_to(folder)): file.read_bytes() for file in sorted(folder.rglob("*"))
-            if file.is_file() and not re.match(r"lock$|store-id$|hairbake\.db", str(file.relative_to(folder)))}
+            if file.is_file() and not re.match(r"lock$|store-id$|reserve$|hairbake\.db", str(file.relative_to(folder)))}
 
 
 def end_of(process):
