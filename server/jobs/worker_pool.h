@@ -60,7 +60,7 @@ private:
     };
     void check_fits(const ClaimedStage& stage, const Sizes& sizes);
     std::uint64_t new_bytes(const Sizes& sizes);
-    std::uint64_t bytes_beside(const ClaimedStage& stage, const Sizes& sizes);
+    std::uint64_t bytes_beside(const ClaimedStage& stage, const Sizes& sizes, std::uint64_t enough);
     void check_known_result(const ClaimedStage& stage);
     void make_room(const ClaimedStage& stage, const Sizes& sizes);
     void note_full_disk(const ClaimedStage& stage);

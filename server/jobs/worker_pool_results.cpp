@@ -1,4 +1,5 @@
 // How the worker pool checks a result and stores it.
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
@@ -84,24 +85,35 @@ std::string WorkerPool::checked_manifest(const ClaimedStage& stage, const fs::pa
     return text;
 }
 
-/// Bytes of what must be stored beside the result until the stage's bakes end: of one bake the inputs and the results
-/// of its stages that are done. Of several bakes the smallest sum counts.
-std::uint64_t WorkerPool::bytes_beside(const ClaimedStage& stage, const Sizes& sizes) {
+/// Bytes of what must be stored beside the result until the stage's bakes end: of one bake the inputs and the results of
+/// its stages that are done. Of several bakes the smallest sum counts; the search ends at one of at most `enough`.
+std::uint64_t WorkerPool::bytes_beside(const ClaimedStage& stage, const Sizes& sizes, std::uint64_t enough) {
     Json result = Json::array();
     for (const auto& [digest, size] : sizes) result.push_back(digest);
-    std::uint64_t bytes = 0;
+    const std::string digests = result.dump();
+    std::optional<std::uint64_t> least;
     database_.read([&](Sql& sql) {
-        const auto rows = sql.rows(
-            "SELECT coalesce(sum(bytes), 0) AS beside FROM (SELECT DISTINCT n.bake, bl.sha256, bl.bytes FROM "
-            "(SELECT m.bake FROM bake_stages m JOIN bakes b ON b.seq = m.bake WHERE m.stage = ?1 AND b.state IN "
-            "('queued', 'running')) n JOIN bake_stages s ON s.bake = n.bake JOIN blobs bl ON bl.sha256 IN ("
-            "SELECT i.sha256 FROM stage_inputs i WHERE i.stage = s.stage UNION SELECT f.sha256 FROM stage_files f JOIN "
-            "stages d ON d.key = f.stage WHERE f.stage = s.stage AND d.state = 'done') WHERE bl.sha256 NOT IN "
-            "(SELECT value FROM json_each(?2))) GROUP BY bake ORDER BY beside LIMIT 1",
-            {stage.key, result.dump()});
-        if (!rows.empty()) bytes = static_cast<std::uint64_t>(rows[0].integer(0));
+        sql.each(
+            "SELECT m.bake FROM bake_stages m JOIN bakes b ON b.seq = m.bake WHERE m.stage = ? AND b.state IN "
+            "('queued', "
+            "'running')",
+            {stage.key}, [&](const SqlRow& bake) {
+                const SqlRow sum =
+                    sql.rows(
+                           "SELECT sum(bytes) FROM blobs WHERE sha256 IN (SELECT i.sha256 FROM bake_stages m JOIN "
+                           "stage_inputs i USING(stage) WHERE m.bake = ?1 UNION SELECT f.sha256 FROM bake_stages m "
+                           "JOIN "
+                           "stages d ON d.key = m.stage JOIN stage_files f USING(stage) WHERE m.bake = ?1 AND d.state "
+                           "= "
+                           "'done') AND sha256 NOT IN (SELECT value FROM json_each(?2))",
+                           {bake.integer(0), digests})
+                        .at(0);
+                const auto bytes = static_cast<std::uint64_t>(sum.integer(0));
+                least = std::min(least.value_or(bytes), bytes);
+                return *least > enough;
+            });
     });
-    return bytes;
+    return least.value_or(0);
 }
 
 /// Throws ResultTooLarge when the whole budget is less than the result, or less than the result and what its bake needs
@@ -118,7 +130,7 @@ void WorkerPool::check_fits(const ClaimedStage& stage, const Sizes& sizes) {
     const std::string result = "the result of " + std::to_string(bytes) + " bytes";
     if (bytes > budget) refuse(result + " is larger than the whole store may be");
     if (room_.fits(new_bytes(sizes))) return;
-    const std::uint64_t beside = bytes_beside(stage, sizes);
+    const std::uint64_t beside = bytes_beside(stage, sizes, budget - bytes);
     if (bytes + beside > budget)
         refuse(result + ", and inputs and other results of the same bake of " + std::to_string(beside) +
                " bytes, are together " + std::to_string(bytes + beside) + " bytes, more than the whole store may be");
