@@ -123,7 +123,8 @@ class FilesTest:
         self.daemon.listen = re.sub(r"port = \d+", f"port = {self.daemon.port}", self.daemon.listen)  # nginx knows this one
         self.daemon.start()
         reply = self.front.ask("GET", path)
-        self.assertEqual((reply.status, reply.headers["Content-Type"]), (503, "application/problem+json"))
+        self.assertEqual((reply.status, reply.headers["Content-Type"]), (404, "application/problem+json"))
+        self.assertIn(f"send the file sha256:{digest} again", reply.json["detail"])
         self.assertEqual(self.front.ask("GET", path).status, 404)
 
 
