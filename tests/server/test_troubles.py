@@ -308,7 +308,7 @@ class Troubles(unittest.TestCase):
             d.blob_file(hair).unlink()
             view = d.wait(d.post(hair, 1)[0])
             self.assertEqual((view["state"], view["error"]["kind"]), ("failed", "bad_input"), view)
-            self.assertIn("send them again", view["error"]["message"])
+            self.assertIn(f"send the file sha256:{hair} again", view["error"]["message"])
             self.assertEqual(d.put(hair_bytes()), hair)
             self.assert_all_done(d, d.post(hair, 1))
 
