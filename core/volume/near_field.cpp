@@ -14,6 +14,7 @@
 #include "core/base/parallel.h"
 #include "core/volume/near_field.h"
 #include "core/volume/near_field_pieces-inl.h"
+#include "core/volume/own_shadow.h"
 
 #ifndef HAIRBAKE_NEAR_FIELD_INPUT
 #define HAIRBAKE_NEAR_FIELD_INPUT
@@ -25,7 +26,7 @@ struct NearFieldInput {
     const HairVolume& volume;
     const NearFieldWindow& window;
     std::span<const std::vector<AngularMean>> means;
-    float own_unit;  ///< exponent for one side of the own strand, divided by opacity * width
+    const OwnShadow& own;
 };
 
 }  // namespace hairbake
@@ -73,16 +74,6 @@ MeanValues<M> grid_depth(const Neighborhood& near, int voxel, const NearFieldWin
     return depths;
 }
 
-/// The number of sides of vertex v on which its strand continues: 2, at an end 1, at a lone point none.
-float own_sides(const StrandGeometry& strands, std::uint32_t v, const OwnSegments& own) {
-    const auto has_solid = [&](std::uint32_t begin, std::uint32_t end) {
-        return std::any_of(strands.segments.begin() + begin, strands.segments.begin() + end,
-                           [](Segment segment) { return segment == Segment::solid; });
-    };
-    const bool before = has_solid(own.first, v), after = has_solid(v, own.last + 1);
-    return static_cast<float>(before) + static_cast<float>(after);
-}
-
 /// Calls visit(begin, end) for the nine rows of pieces in the cells around local position x.
 template <class Visit>
 void for_each_row(const Neighborhood& near, const Vec3f& x, const Visit& visit) {
@@ -122,7 +113,12 @@ HWY_INLINE MeanValues<M> exponents_of(const NearFieldInput& input, std::size_t p
     const std::uint32_t v = input.volume.sorted.vertices[place];
     const OwnSegments own = own_segments(strands, v);
     MeanValues<M> exponents, shares;
-    exponents.fill(own_sides(strands, v, own) * input.own_unit * strands.opacities[v] * strands.widths[v]);
+    std::array<OwnShadow::Depth, M> own_depths;
+    std::array<Vec3f, M> slopes;
+    for (std::size_t m = 0; m < M; ++m)
+        if (means[m].average > 0) slopes[m] = means[m].slope / means[m].average;
+    input.own.depths(strands, input.volume.frame, input.window, v, slopes, own_depths);
+    for (std::size_t m = 0; m < M; ++m) exponents[m] = own_depths[m].swept;
     float largest_share = 0;
     for (std::size_t m = 0; m < M; ++m) {
         shares[m] = NearFieldWindow::share(means[m].average);
@@ -135,7 +131,7 @@ HWY_INLINE MeanValues<M> exponents_of(const NearFieldInput& input, std::size_t p
     const MeanValues<M> exact = exact_depth(near, x, own, means, pieces);
     for (std::size_t m = 0; m < M; ++m) {
         if (!(shares[m] > 0)) continue;
-        const float gain = (smeared[m] - exact[m]) / (4 * std::numbers::pi_v<float>);
+        const float gain = (smeared[m] - exact[m]) / (4 * std::numbers::pi_v<float>)-own_depths[m].in_window;
         exponents[m] += shares[m] * std::min(gain, NearFieldWindow::most_gain);
     }
     return exponents;
@@ -183,8 +179,8 @@ std::vector<std::vector<float>> correct_near_field(const StrandGeometry& strands
     std::vector<std::vector<float>> corrected(means.size(), std::vector<float>(strands.vertex_count()));
     if (means.empty()) return corrected;
     const NearFieldWindow window;
-    const NearFieldInput input{strands, volume, window, means,
-                               0.5f * NearFieldWindow::own_strand_beyond / static_cast<float>(volume.frame.voxel_size)};
+    const OwnShadow own;
+    const NearFieldInput input{strands, volume, window, means, own};
     const SortedStrands& sorted = volume.sorted;
     parallel_for(sorted.brick_count(), 32, [&](std::size_t begin, std::size_t end) {
         progress.check();

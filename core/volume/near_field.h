@@ -31,8 +31,7 @@ constexpr std::size_t kMostMeans = 4;
 /// - F_exact of the strand pieces, in closed form along each piece. The vertex's adjacent segments are left out. The
 ///   distance is never less than half of the width.
 /// - F_grid of the voxels.
-/// `own` removes the part of the vertex's own strand that the grid holds outside the window: half of it at a strand's
-/// end, nothing at a lone point. See docs/math.md, "The near field".
+/// `own` removes what the vertex's own strand takes in the sweep outside F_grid (own_shadow.h). See docs/math.md, "The near field".
 ///
 /// The same bits for any thread count.
 /// Throws Error(cancelled).

@@ -16,10 +16,6 @@ struct NearFieldWindow {
     static constexpr float radius = 0.5f;
     static constexpr std::size_t offsets = 27, padded = 32;
 
-    /// -ln A of a lone straight thin strand on the grid after the correction, divided by opacity * width / h, averaged
-    /// over directions and places of the strand. tests/core/volume/lone_strands_test.cpp derives it.
-    static constexpr float own_strand_beyond = 0.352f;
-
     /// Share of the correction for a vertex of average transmittance A: none below `dark`, all above `light`. In a
     /// dense groom most vertices are dark and share a voxel with many others. Their error is at most a fraction of
     /// their small A. Leaving them out makes the work grow with the visible hair, not with the square of all hair.
