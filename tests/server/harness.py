@@ -22,13 +22,14 @@ def sha256(data):
 
 
 def hair_bytes(strands=40, points=10, seed=0):
-    """A HAIR file (segments from the header, points and thickness arrays): slightly leaning straight strands on a grid."""
+    """A HAIR file (segments from the header, points and thickness arrays): straight strands on a grid, which lean by their seed."""
     count = strands * points
     head = struct.pack("<4sIIIIffff f f", b"HAIR", strands, count, 2, points - 1, 0.01, 0.0, 0.5, 0.5, 0.5, 0.0)[:40]
     data = bytearray(head + b"test".ljust(88, b"\0"))
+    lean = 0.02 + 0.004 * (seed % 50)  # another A
     for s in range(strands):
         for p in range(points):
-            data += struct.pack("<fff", s % 7 * 0.1 + 0.02 * p + 0.001 * seed, 0.1 * p, s // 7 * 0.1)
+            data += struct.pack("<fff", s % 7 * 0.1 + lean * p + 0.001 * seed, 0.1 * p, s // 7 * 0.1)
     return bytes(data)
 
 
