@@ -111,27 +111,29 @@ HWY_INLINE MeanValues<M> exponents_of(const NearFieldInput& input, std::size_t p
                                       const VertexMeans<M>& means, Reaching<M>& pieces) {
     const StrandGeometry& strands = input.strands;
     const std::uint32_t v = input.volume.sorted.vertices[place];
-    const OwnSegments own = own_segments(strands, v);
-    MeanValues<M> exponents, shares;
-    std::array<OwnShadow::Depth, M> own_depths;
-    std::array<Vec3f, M> slopes;
-    for (std::size_t m = 0; m < M; ++m)
-        if (means[m].average > 0) slopes[m] = means[m].slope / means[m].average;
-    input.own.depths(strands, input.volume.frame, input.window, v, slopes, own_depths);
-    for (std::size_t m = 0; m < M; ++m) exponents[m] = own_depths[m].swept;
+    MeanValues<M> exponents{}, shares;
     float largest_share = 0;
     for (std::size_t m = 0; m < M; ++m) {
         shares[m] = NearFieldWindow::share(means[m].average);
         largest_share = std::max(largest_share, shares[m]);
     }
+    if (!(largest_share > 0)) return exponents;
+    const OwnSegments own = own_segments(strands, v);
+    std::array<OwnShadow::Depth, M> own_depths;
+    std::array<Vec3f, M> slopes;
+    for (std::size_t m = 0; m < M; ++m)
+        if (means[m].average > 0) slopes[m] = means[m].slope / means[m].average;
+    input.own.depths(strands, input.volume.frame, input.window, v, slopes, own_depths);
+    for (std::size_t m = 0; m < M; ++m) exponents[m] = shares[m] * own_depths[m].swept;
     const Vec3f x = input.volume.sorted.vertex_positions[place] - near.corner;
-    if (!(largest_share > 0) || pieces_around(near, x) > NearFieldWindow::most_pieces) return exponents;
+    if (pieces_around(near, x) > NearFieldWindow::most_pieces) return exponents;
     const int voxel = Neighborhood::voxel(static_cast<int>(x.x), static_cast<int>(x.y), static_cast<int>(x.z));
     const MeanValues<M> smeared = grid_depth(near, voxel, input.window, means);
     const MeanValues<M> exact = exact_depth(near, x, own, means, pieces);
     for (std::size_t m = 0; m < M; ++m) {
         if (!(shares[m] > 0)) continue;
-        const float gain = (smeared[m] - exact[m]) / (4 * std::numbers::pi_v<float>)-own_depths[m].in_window;
+        const float others = (smeared[m] - exact[m]) / (4 * std::numbers::pi_v<float>);
+        const float gain = others - own_depths[m].in_window;
         exponents[m] += shares[m] * std::min(gain, NearFieldWindow::most_gain);
     }
     return exponents;

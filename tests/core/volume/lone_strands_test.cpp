@@ -104,7 +104,7 @@ TEST(OwnShadow, IsWhatALoneStrandTakesInTheSweep) {
 }
 
 TEST(NearField, CorrectsEachOfSeveralMeansAsItWouldAlone) {
-    // Means of three lights, and one that is dark everywhere: the correction leaves it alone but for the own strand.
+    // Means of three lights, and one that is dark everywhere: the correction leaves it alone.
     Random random(7);
     StrandModel model;
     fill(model, ball(1), Vec3d(-1), Vec3d(1), {.width = 0.02, .length = 0.3, .extinction = 1.5}, random);
