@@ -18,9 +18,10 @@ struct BakeOptions {
     bool keep_environment_pixels = false;  ///< in result.inputs.environment
 };
 
-/// Finds out what can be known before a bake of `request` into `folder`: the request is valid, results may go to the folder
-/// and can be written there, no input would be deleted with an earlier result, and the headers of all inputs are right.
-/// Reads no file to its end. bake() and write_result() make the same checks; this call makes all of them at once.
+/// Finds out what can be known before a bake of `request` into `folder`: the request is valid, results may go to the
+/// folder and can be written there, no input would be deleted with an earlier result, and the headers of all inputs are
+/// right. Reads no file to its end. bake() and write_result() make the same checks; this call makes all of them at
+/// once.
 /// Throws the errors of bake() and write_result().
 /// Throws Error(usage) naming an input in the folder.
 void check_bake(const BakeRequest& request, const std::filesystem::path& folder);

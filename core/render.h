@@ -37,8 +37,8 @@ RenderedPicture render(const RenderRequest& request, int threads, BakeProgress& 
 /// 0 for channels that show no light.
 double automatic_exposure(const RenderedPicture& picture);
 
-/// Writes the picture by the name's ending, in lower or upper case: .exr linear float32, .png through the film curve at `stops`
-/// (transmittance: 0 to 1 as 0 to 255; tangent: -1 to 1). The file appears whole.
+/// Writes the picture by the name's ending, in lower or upper case: .exr linear float32, .png through the film curve at
+/// `stops` (transmittance: 0 to 1 as 0 to 255; tangent: -1 to 1). The file appears whole.
 /// Throws Error(usage) for another ending, and the errors of FileSink.
 void write_picture(const RenderedPicture& picture, double stops, const std::filesystem::path& file);
 

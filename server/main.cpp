@@ -174,8 +174,8 @@ void wait_for_signal() {
     }
 }
 
-/// Ends the process after `patience` without waiting for slow clients and workers. Everything that was acknowledged is on
-/// the disk already.
+/// Ends the process after `patience` without waiting for slow clients and workers. Everything that was acknowledged is
+/// on the disk already.
 void end_hard_after(std::chrono::seconds patience) {
     signal(SIGALRM, [](int) { _exit(0); });  // no thread: the system may give none
     alarm(static_cast<unsigned>(patience.count()));
@@ -201,8 +201,8 @@ HttpReply answer(const Router& router, Metrics& metrics, HttpRequest& request) {
     return reply;
 }
 
-/// Gives the memory of a large body back to the system when it is freed. By itself the allocator raises these bounds with
-/// the largest block that was freed, and then each thread's arena keeps as much.
+/// Gives the memory of a large body back to the system when it is freed. By itself the allocator raises these bounds
+/// with the largest block that was freed, and then each thread's arena keeps as much.
 void give_back_freed_memory() {
     ::mallopt(M_MMAP_THRESHOLD, 128 << 10);
     ::mallopt(M_TRIM_THRESHOLD, 128 << 10);

@@ -1,5 +1,5 @@
-// What the options of the command line take, with messages for people. A message follows the option's name: "--threads is
-// -1; allowed is 0 to 1024".
+// What the options of the command line take, with messages for people. A message follows the option's name: "--threads
+// is -1; allowed is 0 to 1024".
 #pragma once
 
 #include <CLI/CLI.hpp>

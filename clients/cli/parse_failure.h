@@ -11,8 +11,8 @@ class ParseError;
 
 namespace hairbake {
 
-/// What is wrong, and what to do. An option or command that does not exist is reported before all else, as it was typed,
-/// with the one that may have been meant.
+/// What is wrong, and what to do. An option or command that does not exist is reported before all else, as it was
+/// typed, with the one that may have been meant.
 ///   arguments: those of main(), without the program
 std::string words_for(const CLI::ParseError& error, const CLI::App& app, std::span<char* const> arguments);
 

@@ -12,8 +12,8 @@
 namespace hairbake {
 
 /// `mode`: "auto" is a bar on standard error when that is a terminal, else nothing; "json" is one JSON object a line on
-/// standard output, and one that cannot be written is an error of report(); "none" is silent. Updates at most ten times a second, from any thread. It begins in the first
-/// of `phases`.
+/// standard output, and one that cannot be written is an error of report(); "none" is silent. Updates at most ten times
+/// a second, from any thread. It begins in the first of `phases`.
 std::unique_ptr<BakeProgress> make_progress_display(const std::string& mode, const std::vector<Phase>& phases);
 
 /// `text` as a JSON string with its quotes. Bytes that are not UTF-8 stay as they are.

@@ -8,8 +8,9 @@
 
 namespace hairbake {
 
-/// Blocks SIGINT, SIGTERM and SIGHUP in this thread and all that it starts later, so that SignalWatch alone receives them;
-/// ignores SIGPIPE and SIGXFSZ, whose failures show as errors of the write. SIGHUP stays ignored where it is (nohup). Call it at the start of main().
+/// Blocks SIGINT, SIGTERM and SIGHUP in this thread and all that it starts later, so that SignalWatch alone receives
+/// them; ignores SIGPIPE and SIGXFSZ, whose failures show as errors of the write. SIGHUP stays ignored where it is
+/// (nohup). Call it at the start of main().
 void block_signals();
 
 /// While it lives, a signal cancels `progress`. When the process still runs 0.8 s later, or a second signal comes,

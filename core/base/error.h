@@ -15,8 +15,9 @@ enum class ErrorKind {
 };
 
 /// The message is for the person who gave the input: it names the file, the place in it, what was found and what is
-/// allowed. `field` is the request field at fault ("transmittance.voxels") or empty. `system_error` is the system's error
-/// number (errno) where a call of the system failed, or 0. The machine is then at fault, and not what a file holds.
+/// allowed. `field` is the request field at fault ("transmittance.voxels") or empty. `system_error` is the system's
+/// error number (errno) where a call of the system failed, or 0. The machine is then at fault, and not what a file
+/// holds.
 class Error : public std::runtime_error {
 public:
     Error(ErrorKind kind, const std::string& message, std::string field = {}, int system_error = 0)

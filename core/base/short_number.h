@@ -7,8 +7,8 @@
 
 namespace hairbake {
 
-/// At most ten significant digits, no zeros at the end: "0.25", "1e+18", "nan". Integers that a double holds exactly have
-/// all their digits: "9007199254740991".
+/// At most ten significant digits, no zeros at the end: "0.25", "1e+18", "nan". Integers that a double holds exactly
+/// have all their digits: "9007199254740991".
 inline std::string short_number(double value) {
     char buffer[32];
     if (std::abs(value) <= 0x1p53 && value == std::floor(value)) {

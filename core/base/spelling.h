@@ -7,9 +7,9 @@
 
 namespace hairbake {
 
-/// The one of `candidates` that differs from `word` in the fewest letters (inserted, left out, replaced, or two swapped),
-/// the first of several; empty where all differ in more than a third of the word's letters (dashes at the beginning do
-/// not count), and in more than one.
+/// The one of `candidates` that differs from `word` in the fewest letters (inserted, left out, replaced, or two
+/// swapped), the first of several; empty where all differ in more than a third of the word's letters (dashes at the
+/// beginning do not count), and in more than one.
 std::string closest_word(std::string_view word, const std::vector<std::string>& candidates);
 
 /// " (did you mean X?)", or empty where no candidate is close.

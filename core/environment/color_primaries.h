@@ -33,9 +33,9 @@ Chromaticities default_chromaticities();
 /// primaries".
 std::string fault_of(const Chromaticities& primaries);
 
-/// The matrix (rows) from linear RGB of `from` to linear RGB of `to`: over CIE XYZ, with the Bradford adaptation between
-/// two white points (Lam 1985; ICC.1:2010, annex E). White (1, 1, 1) becomes white. Colours outside `to` get negative
-/// values. Both must have no fault. Thread-safe.
+/// The matrix (rows) from linear RGB of `from` to linear RGB of `to`: over CIE XYZ, with the Bradford adaptation
+/// between two white points (Lam 1985; ICC.1:2010, annex E). White (1, 1, 1) becomes white. Colours outside `to` get
+/// negative values. Both must have no fault. Thread-safe.
 std::array<Vec3d, 3> rgb_conversion(const Chromaticities& from, const Chromaticities& to);
 
 }  // namespace hairbake

@@ -20,9 +20,10 @@ std::string fault_of_size(EnvironmentLayout requested, int width, int height);
 ///   files      one picture, or six faces that are square, of one size and of one colour space
 ///   requested  the layout, or automatic
 ///   progress   reports 0 to 0.9
-/// An EXR that calls itself a cube map (envmap attribute) has OpenEXR's own orientation of the faces. They are turned to
-/// that of OpenGL, unless the layout vertical_strip is requested by name. Both are said in a warning. So is a cross that
-/// was found by its shape and has a picture outside its faces. Every size is checked before memory is taken for it.
+/// An EXR that calls itself a cube map (envmap attribute) has OpenEXR's own orientation of the faces. They are turned
+/// to that of OpenGL, unless the layout vertical_strip is requested by name. Both are said in a warning. So is a cross
+/// that was found by its shape and has a picture outside its faces. Every size is checked before memory is taken for
+/// it.
 /// Throws Error(bad_input) naming the file, what was found and what is allowed, Error(out_of_resources),
 /// Error(cancelled).
 EnvironmentMap assemble_environment(const EnvironmentFiles& files, EnvironmentLayout requested, Progress& progress);

@@ -53,8 +53,8 @@ void expose(EnvironmentMap& map, const EnvironmentSettings& settings, const std:
         if (row) refuse_overflow(map, file);
 }
 
-/// Counts of the repaired pixels by kind; empty where all were valid, and where the policy automatic removed less than a
-/// millionth of the light: nearly every sky made by a program has a few negative pixels of rounding.
+/// Counts of the repaired pixels by kind; empty where all were valid, and where the policy automatic removed less than
+/// a millionth of the light: nearly every sky made by a program has a few negative pixels of rounding.
 std::string repair_warning(const RadianceRepairs& done, InvalidRadiance policy) {
     constexpr double noticeable = 1e-6;
     if (policy == InvalidRadiance::automatic && done.nan_pixels + done.infinite_pixels == 0 &&

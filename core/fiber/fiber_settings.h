@@ -1,7 +1,7 @@
 // The request's `fiber` block: the fibre model and its parameters.
 //
-// A model is listed here seven times: its kind, its parameters, the declaration of its make_fiber_model(), its member of
-// FiberSettings, its alternative of FiberParameters, its line in fiber_models, and a line in fiber_numbers for each
+// A model is listed here seven times: its kind, its parameters, the declaration of its make_fiber_model(), its member
+// of FiberSettings, its alternative of FiberParameters, its line in fiber_models, and a line in fiber_numbers for each
 // parameter. Request fields, ranges, stage keys and metadata of pictures and maps are made from these tables.
 #pragma once
 

@@ -23,8 +23,8 @@ struct HairReader {
     /// Whether a file that begins with `bytes` is of this format. Nothing else decides which reader gets a file.
     bool (*recognises)(std::span<const std::byte> bytes);
 
-    /// Refuses what the header alone shows to be wrong, without reading the strands. `read` makes the same checks first.
-    /// Like `read`, it is also called for a file that has this extension but begins as no known format.
+    /// Refuses what the header alone shows to be wrong, without reading the strands. `read` makes the same checks
+    /// first. Like `read`, it is also called for a file that has this extension but begins as no known format.
     void (*check)(const HairSource& source);
 
     /// Reads the file. It is also called for a file that has this extension but begins as no known format; it must

@@ -41,9 +41,9 @@ struct OwnSegments {
 };
 
 /// How far along its strand a vertex is not shadowed by it, in widths at the vertex. Within this arc length a strand is
-/// near itself only by its own thickness: the smallest curls of hair go round in some sixty widths. A ray that leaves the
-/// vertex at the angle a to the strand has left the strand after 1 / (2 sin a) widths, so that beyond 8 widths only rays
-/// within 3.6 degrees of the strand (0.2 % of the sphere) are still inside; own_strand.h follows those.
+/// near itself only by its own thickness: the smallest curls of hair go round in some sixty widths. A ray that leaves
+/// the vertex at the angle a to the strand has left the strand after 1 / (2 sin a) widths, so that beyond 8 widths only
+/// rays within 3.6 degrees of the strand (0.2 % of the sphere) are still inside; own_strand.h follows those.
 inline constexpr float own_arc_widths = 8;
 
 /// The segments that touch vertex `v`, and those with a part within own_arc_widths of it along the strand. Degenerate

@@ -36,8 +36,8 @@ struct IrradianceMaps {
     int environment_sh_bands = 0;
 
     /// Bound for |linear interpolation between neighbouring theta' - truth| at any t and theta': per channel in the
-    /// unit of the maps, and relative to the largest value of the specular maps (interpolation_bound.h). `sh` gathers the
-    /// environment into fewer lights for it, so its bound is a little larger.
+    /// unit of the maps, and relative to the largest value of the specular maps (interpolation_bound.h). `sh` gathers
+    /// the environment into fewer lights for it, so its bound is a little larger.
     Vec3d interpolation_bound;
     double interpolation_bound_relative = 0;
 

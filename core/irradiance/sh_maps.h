@@ -40,12 +40,12 @@ struct ShMaps {
 /// Every kernel is zonal about t, so map_lm = lambda_l * environment_lm (Funk-Hecke; the transfer matrix of Xing 2012,
 /// equation 11, is diagonal; docs/math.md, "Spherical harmonics").
 ///
-/// The error of keeping `bands` bands, as RMS over the sphere of tangents, a lobe's maps and the channels, is by Parseval
-/// sqrt(1/(4 pi) * sum over l >= bands of lambda_l^2 * power_l), power_l = sum over m of c_lm^2. Bands that were not
-/// projected count with the largest power that a non-negative environment of that flux can have,
-/// power_l <= (2l + 1)/(4 pi) flux^2. A tenth is added, because maps hold samples of the sphere. The sum is divided by
-/// the largest value of the lobe's maps with all projected bands. `auto` takes the fewest bands that predict at most sh_error, separately for the
-/// diffuse and the specular maps, at most 128. Deterministic for any thread count.
+/// The error of keeping `bands` bands, as RMS over the sphere of tangents, a lobe's maps and the channels, is by
+/// Parseval sqrt(1/(4 pi) * sum over l >= bands of lambda_l^2 * power_l), power_l = sum over m of c_lm^2. Bands that
+/// were not projected count with the largest power that a non-negative environment of that flux can have, power_l <=
+/// (2l + 1)/(4 pi) flux^2. A tenth is added, because maps hold samples of the sphere. The sum is divided by the largest
+/// value of the lobe's maps with all projected bands. `auto` takes the fewest bands that predict at most sh_error,
+/// separately for the diffuse and the specular maps, at most 128. Deterministic for any thread count.
 /// Throws Error(cancelled).
 ShMaps bake_sh_maps(const EnvironmentMap& map, const IrradianceSettings& settings, const ZonalKernels& kernels,
                     int report_bands, const Progress& progress);

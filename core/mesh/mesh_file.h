@@ -26,7 +26,8 @@ namespace hairbake {
 /// Throws Error(out_of_resources) when memory ends.
 TriangleMesh read_mesh(const std::filesystem::path& file);
 
-/// Checks what read_mesh() checks before it reads: the file is there, can be opened, is a regular file and not too long.
+/// Checks what read_mesh() checks before it reads: the file is there, can be opened, is a regular file and not too
+/// long.
 /// Throws the same errors with the same words.
 void check_mesh(const std::filesystem::path& file);
 

@@ -8,11 +8,12 @@
 namespace hairbake {
 
 /// Throws Error(usage) when results may not go to `folder`: it is no folder, a mount point, or holds files that are not
-/// those of an earlier result. Such a result (a manifest.json of hairbake and nothing that it does not list) may be replaced.
+/// those of an earlier result. Such a result (a manifest.json of hairbake and nothing that it does not list) may be
+/// replaced.
 void check_result_folder(const std::filesystem::path& folder);
 
-/// Also proves that results can be written to `folder`: makes the staging folder, with the parents that are missing, and
-/// removes both again.
+/// Also proves that results can be written to `folder`: makes the staging folder, with the parents that are missing,
+/// and removes both again.
 /// Throws as check_result_folder() and as the constructor of ResultFolder.
 void prove_writable(const std::filesystem::path& folder);
 

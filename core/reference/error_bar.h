@@ -48,8 +48,8 @@ ErrorFigures error_statistics(std::span<const float> baked, const TracedHalves& 
 /// Statistics against a reference without noise.
 ErrorFigures error_statistics(std::span<const float> baked, std::span<const float> traced);
 
-/// The directions of the reference: two halves of 2,048 Fibonacci directions each, turned by two fixed rotations, so that
-/// no bake uses a set like them.
+/// The directions of the reference: two halves of 2,048 Fibonacci directions each, turned by two fixed rotations, so
+/// that no bake uses a set like them.
 inline constexpr int reference_directions = 4096;
 std::array<std::vector<Vec3d>, 2> make_reference_directions();
 

@@ -13,8 +13,8 @@ public:
     JointWalk(const StrandGeometry& strands, std::uint32_t v, const Vec3f& l)
         : strands_(strands), origin_(strands.positions[v]), direction_(l) {}
 
-    /// Whether the ray passes `joint` inside the strand, and not before the previous joint. A step back of up to a radius
-    /// is no turn: joints much closer than the strand is wide are not in line.
+    /// Whether the ray passes `joint` inside the strand, and not before the previous joint. A step back of up to a
+    /// radius is no turn: joints much closer than the strand is wide are not in line.
     bool passes(std::uint32_t joint) {
         const Vec3d to_joint = Vec3d(strands_.positions[joint]) - origin_;
         const double t = std::max(0.0, dot(to_joint, direction_));

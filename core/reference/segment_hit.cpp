@@ -25,8 +25,8 @@ double lowest(const Vec3d& v, const Vec3d& w, double r, double dr, double begin,
 
 Vec3d across(const Vec3d& v, const Vec3d& l) { return v - l * dot(v, l); }
 
-/// Whether the ray's line comes into the sphere at s. The distance is measured at s itself: a polynomial in s would lose
-/// the digits of a thin cone that is far away.
+/// Whether the ray's line comes into the sphere at s. The distance is measured at s itself: a polynomial in s would
+/// lose the digits of a thin cone that is far away.
 bool line_meets(const Cone& cone, const Vec3d& l, double s) {
     const Vec3d to_centre = across(cone.centre(s), l);
     const double radius = cone.radius(s);

@@ -27,10 +27,10 @@ float power_of_two_scale(const StrandGeometry& strands) {
 }
 
 /// Radius of Embree's curve at an end of segments up to `longest`, in Embree's units. A hit is decided by the squared
-/// distance between ray and axis. Its error in single precision is some units of the last place of the squared length of
-/// the segment; moving the ray's origin to the segment adds some units of the last place of their distance, which is at
-/// most the size of the scene (below 4, since scale() makes its longest side 1 to 2). 16 units are allowed for both; the
-/// test StrandScene.* finds no lost hit.
+/// distance between ray and axis. Its error in single precision is some units of the last place of the squared length
+/// of the segment; moving the ray's origin to the segment adds some units of the last place of their distance, which is
+/// at most the size of the scene (below 4, since scale() makes its longest side 1 to 2). 16 units are allowed for both;
+/// the test StrandScene.* finds no lost hit.
 float embree_radius(double radius, double longest) {
     constexpr double unit = 16 * 0x1p-24, size = 4;
     return static_cast<float>(std::sqrt(radius * radius + unit * longest * longest) + unit * size);

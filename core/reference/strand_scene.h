@@ -12,10 +12,10 @@ struct RTCSceneTy;
 
 namespace hairbake {
 
-/// Solid segments as Embree round linear curves (cones with rounded joints), without degenerate segments. Primitive k of
-/// geometry 0 is segment segment_of(k). The curves are a little thicker than the strands, by what Embree's single
-/// precision can lose (embree_radius): a hit counts only when ray_meets_segment() (segment_hit.h) confirms it, which the
-/// filter functions of those who trace the scene must ask. In Embree the model is scaled by scale(). The occluder
+/// Solid segments as Embree round linear curves (cones with rounded joints), without degenerate segments. Primitive k
+/// of geometry 0 is segment segment_of(k). The curves are a little thicker than the strands, by what Embree's single
+/// precision can lose (embree_radius): a hit counts only when ray_meets_segment() (segment_hit.h) confirms it, which
+/// the filter functions of those who trace the scene must ask. In Embree the model is scaled by scale(). The occluder
 /// is an Embree scene of its own, because its rays start elsewhere (core/mesh/grounding.h). Immutable after
 /// construction; several threads may trace it.
 class StrandScene {

@@ -55,7 +55,8 @@ bool is_own(const PacketContext& context, unsigned lane, std::uint32_t segment) 
            enters_from_inside(context.scene->strands(), vertex, own, segment, context.direction);
 }
 
-/// Drops hits on the surplus of Embree's curves and on a vertex's own strand. Where hits are collected, stores every other hit and lets the ray continue.
+/// Drops hits on the surplus of Embree's curves and on a vertex's own strand. Where hits are collected, stores every
+/// other hit and lets the ray continue.
 void filter(const RTCFilterFunctionNArguments* arguments) {
     auto& context = *reinterpret_cast<PacketContext*>(arguments->context);
     for (unsigned i = 0; i < arguments->N; ++i) {

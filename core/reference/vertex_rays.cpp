@@ -22,7 +22,8 @@ struct RayContext {
     std::vector<std::uint32_t>* hit;  ///< segments met; null: the first hit ends the ray
 };
 
-/// Drops hits on the surplus of Embree's curves and on the vertex's own strand. Where hits are collected, stores every other hit and lets the ray continue.
+/// Drops hits on the surplus of Embree's curves and on the vertex's own strand. Where hits are collected, stores every
+/// other hit and lets the ray continue.
 void filter(const RTCFilterFunctionNArguments* arguments) {
     auto& context = *reinterpret_cast<RayContext*>(arguments->context);
     const std::uint32_t primitive = RTCHitN_primID(arguments->hit, arguments->N, 0);

@@ -37,7 +37,8 @@ std::string names_in(const std::string& block) {
     return list;
 }
 
-/// " (did you mean transmittance.voxels?)" for "voxels", "transmittance.voxel" and the like; empty where nothing is close.
+/// " (did you mean transmittance.voxels?)" for "voxels", "transmittance.voxel" and the like; empty where nothing is
+/// close.
 std::string suggestion(const std::string& path) {
     const std::vector<std::string> paths = field_paths();
     for (const std::string& known : paths)
@@ -107,8 +108,8 @@ private:
     std::set<const RequestField*> set_;
 };
 
-/// Reads `text` as JSON, as a number that JSON does not know (".05", "1.", "+5"), or as plain text. `path` is the field that
-/// gets the value.
+/// Reads `text` as JSON, as a number that JSON does not know (".05", "1.", "+5"), or as plain text. `path` is the field
+/// that gets the value.
 Json json_or_text(const std::string& text, const std::string& path) {
     Json value = Json::parse(text, nullptr, false);
     if (value.is_discarded()) {

@@ -45,8 +45,8 @@ std::span<const Stage> stages();
 /// The outputs in which the stage writes files, as the request's schema lists them (outputs, x-stages).
 const std::vector<std::string>& formats_of(const Stage& stage);
 
-/// The numbers on which keys depend, for people: "transmittance 2, irradiance 2, output format 1". Programs of which this
-/// text differs make other keys.
+/// The numbers on which keys depend, for people: "transmittance 2, irradiance 2, output format 1". Programs of which
+/// this text differs make other keys.
 std::string versions_text();
 
 /// Null where there is no stage of this name.
@@ -77,9 +77,8 @@ std::string bake_id(const StageKeys& keys, const BakeRequest& request);
 /// read give the same request.
 BakeRequest request_alone(const Stage& stage, const BakeRequest& request);
 
-/// The phases of a bake of these stages, in order: all inputs are read first, so that a fault in one is known before the
-/// work; "write" is last.
-/// Shares sum to 1 and are rough.
+/// The phases of a bake of these stages, in order: all inputs are read first, so that a fault in one is known before
+/// the work; "write" is last. Shares sum to 1 and are rough.
 std::vector<Phase> planned_phases(std::span<const Stage* const> stages, const BakeRequest& request);
 
 /// The finished share of the whole, in [0, 1], at `fraction` of the phase `name`; 0 for a phase that is not planned.

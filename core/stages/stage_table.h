@@ -19,8 +19,8 @@ struct StageContext {
 /// Throws Error as bake().
 StagePart run_stage(const Stage& stage, StageContext& context);
 
-/// The code of one stage, in a file of its own (stage_table.cpp declares them all). `part` comes with stage and key; the
-/// function fills in the rest.
+/// The code of one stage, in a file of its own (stage_table.cpp declares them all). `part` comes with stage and key;
+/// the function fills in the rest.
 using StageFunction = void(StageContext& context, StagePart& part);
 
 }  // namespace hairbake

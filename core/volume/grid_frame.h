@@ -65,8 +65,8 @@ double typical_largest_width(const std::vector<float>& widths);
 ///
 /// `voxels` auto is a function of the model and the number of directions alone: h = max(0.8 * spacing, longest side /
 /// n), n = 25.6 sqrt(directions), at most 512. Voxels much finer than the distance between strands (strand_spacing.h)
-/// hold single strands, which the mean field takes for a mist: the error rises (docs/math.md, section 8). More voxels than n
-/// gain little on dense hair.
+/// hold single strands, which the mean field takes for a mist: the error rises (docs/math.md, section 8). More voxels
+/// than n gain little on dense hair.
 /// Throws Error(usage) for voxels out of range and for more than 1,024 voxels on the longest axis.
 /// Throws Error(bad_input) for bounds that no grid can hold.
 /// Throws Error(out_of_resources) for 2^31 vertices or more.

@@ -31,7 +31,8 @@ constexpr std::size_t kMostMeans = 4;
 /// - F_exact of the strand pieces, in closed form along each piece. The vertex's adjacent segments are left out. The
 ///   distance is never less than half of the width.
 /// - F_grid of the voxels.
-/// Nothing is corrected where A is small (NearFieldWindow::share). `own` removes what the vertex's own strand takes in the sweep outside F_grid (own_shadow.h). See docs/math.md, "The near field".
+/// Nothing is corrected where A is small (NearFieldWindow::share). `own` removes what the vertex's own strand takes in
+/// the sweep outside F_grid (own_shadow.h). See docs/math.md, "The near field".
 ///
 /// The same bits for any thread count.
 /// Throws Error(cancelled).

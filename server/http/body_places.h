@@ -9,8 +9,8 @@
 
 namespace hairbake {
 
-/// Thread-safe. A request takes a place when it is let in, after the check of its token, and keeps it until it is answered.
-/// So a request that is refused holds no place, and one address cannot take all of them.
+/// Thread-safe. A request takes a place when it is let in, after the check of its token, and keeps it until it is
+/// answered. So a request that is refused holds no place, and one address cannot take all of them.
 class BodyPlaces {
 public:
     /// `places` in all, `per_address` for each address that nginx names; requests that nginx did not forward have no
@@ -32,8 +32,8 @@ public:
         std::string client_;
     };
 
-    /// `address` is an IP address as text, or empty. Of an IPv6 address the first 64 bits count: a client has all others.
-    /// Nothing when all places, or all of this address, are taken.
+    /// `address` is an IP address as text, or empty. Of an IPv6 address the first 64 bits count: a client has all
+    /// others. Nothing when all places, or all of this address, are taken.
     std::optional<Place> take(const std::string& address);
 
     /// Why take() gave nothing: how many places are taken, how many are allowed, by which setting.

@@ -23,8 +23,8 @@ struct BodySchema {
     valijson::Schema parsed;
 };
 
-/// valijson makes a std::regex for every pattern, and libstdc++'s regex fills a cache of the locale without a lock. This
-/// fills the cache in advance, so that threads only read it.
+/// valijson makes a std::regex for every pattern, and libstdc++'s regex fills a cache of the locale without a lock.
+/// This fills the cache in advance, so that threads only read it.
 void fill_narrow_cache() {
     const auto& characters = std::use_facet<std::ctype<char>>(std::locale());
     for (int c = 1; c < 256; ++c) characters.narrow(static_cast<char>(c), 0);

@@ -12,8 +12,8 @@
 
 namespace hairbake {
 
-/// For one thread. Owns the socket and closes it. Written bytes are buffered until they fill a packet, something is read,
-/// or flush() is called, so that a reply's head and body leave together.
+/// For one thread. Owns the socket and closes it. Written bytes are buffered until they fill a packet, something is
+/// read, or flush() is called, so that a reply's head and body leave together.
 class Connection {
 public:
     struct Patience {

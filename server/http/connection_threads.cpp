@@ -19,8 +19,8 @@ using Clock = std::chrono::steady_clock;
 /// Whether the socket cannot accept any more.
 bool is_final(int error) { return error == EINVAL || error == EBADF || error == ENOTSOCK; }
 
-/// Whether accept() can be called again at once: a signal came, or the client went away. The other errors are shortages of
-/// descriptors or memory, which may pass.
+/// Whether accept() can be called again at once: a signal came, or the client went away. The other errors are shortages
+/// of descriptors or memory, which may pass.
 bool is_nothing(int error) { return error == EINTR || error == EAGAIN || error == ECONNABORTED; }
 
 }  // namespace

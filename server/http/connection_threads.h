@@ -11,9 +11,9 @@
 namespace hairbake {
 
 /// A thread serves the connections that it accepted itself, so under light load no connection changes its thread. A few
-/// threads accept at a time; the others sleep. The thread that fell asleep last is woken first, since its stack is still
-/// in the cache. While all `threads` serve, one more thread accepts: connections wait in the queue in order, and are
-/// refused when it is full.
+/// threads accept at a time; the others sleep. The thread that fell asleep last is woken first, since its stack is
+/// still in the cache. While all `threads` serve, one more thread accepts: connections wait in the queue in order, and
+/// are refused when it is full.
 class ConnectionThreads {
 public:
     /// Takes over an accepted connection's socket. Must not throw.
@@ -23,7 +23,8 @@ public:
     /// `threads` >= 1 connections are served at once.
     /// `waiting` >= 1 connections may be in the queue.
     /// `serve` and `refuse` handle a connection; one thread at a time calls `refuse`.
-    /// Throws std::system_error when the system gives no more threads; a connection that was accepted meanwhile is served.
+    /// Throws std::system_error when the system gives no more threads; a connection that was accepted meanwhile is
+    /// served.
     ConnectionThreads(int listening, int threads, int waiting, Handler serve, Handler refuse);
 
     /// Stops, and waits as join() does.
@@ -31,8 +32,8 @@ public:
     ConnectionThreads(const ConnectionThreads&) = delete;
     ConnectionThreads& operator=(const ConnectionThreads&) = delete;
 
-    /// Waits until stop() is called or the socket cannot accept any more. Returns when all accepted connections are served
-    /// and all threads have ended. Call it from one thread.
+    /// Waits until stop() is called or the socket cannot accept any more. Returns when all accepted connections are
+    /// served and all threads have ended. Call it from one thread.
     void join();
     /// Thread-safe.
     void stop();

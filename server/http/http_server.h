@@ -17,8 +17,8 @@ struct HttpServerSettings {
     std::string accel;  ///< nginx's location of the store's blobs; empty: the daemon sends them itself
 };
 
-/// Answers one request a connection. Malformed requests (framing, paths, control characters, encodings) get problem+json
-/// and reach no route. Thread-safe.
+/// Answers one request a connection. Malformed requests (framing, paths, control characters, encodings) get
+/// problem+json and reach no route. Thread-safe.
 class HttpServer {
 public:
     using Handler = std::function<HttpReply(HttpRequest&)>;

@@ -21,9 +21,9 @@ struct JsonBody {
     std::string text;
 };
 
-/// Thread-safe. While a body arrives, its first 64 KiB are in memory and a longer body is in a file, so that slow clients
-/// hold no memory. While a body is parsed, it has a share of a budget of 32 MB in all, and others wait: bodies of up to
-/// 64 KiB share a quarter of it, so that they do not wait for larger ones.
+/// Thread-safe. While a body arrives, its first 64 KiB are in memory and a longer body is in a file, so that slow
+/// clients hold no memory. While a body is parsed, it has a share of a budget of 32 MB in all, and others wait: bodies
+/// of up to 64 KiB share a quarter of it, so that they do not wait for larger ones.
 class JsonBodies {
 public:
     /// `folder` takes the files of bodies that are under way. They have no names.

@@ -10,11 +10,12 @@
 
 namespace hairbake {
 
-/// After a reply to a request that was not read to its end, the bytes that still come must be read for a while: otherwise
-/// a connection reset could destroy the reply. One thread does this for all connections. Thread-safe.
+/// After a reply to a request that was not read to its end, the bytes that still come must be read for a while:
+/// otherwise a connection reset could destroy the reply. One thread does this for all connections. Thread-safe.
 class Lingering {
 public:
-    /// A connection is closed after `patience`, after 16 MiB, when its client closes it, or when `most` newer ones came.
+    /// A connection is closed after `patience`, after 16 MiB, when its client closes it, or when `most` newer ones
+    /// came.
     Lingering(std::chrono::milliseconds patience, std::size_t most);
     /// Closes all.
     ~Lingering();

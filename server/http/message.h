@@ -20,7 +20,8 @@ struct HttpRequest {
     std::map<std::string, std::string> query;     ///< decoded; of equal names, the last value
     std::optional<std::uint64_t> content_length;  ///< nothing: chunked, or no body
     bool has_body = false;
-    /// The first header of that name, in upper or lower case. Values may be percent-decoded and have no control characters.
+    /// The first header of that name, in upper or lower case. Values may be percent-decoded and have no control
+    /// characters.
     std::function<std::optional<std::string>(const std::string&)> header;
     /// Feeds the body to the receiver in pieces. Exceptions of the receiver pass through.
     /// Throws Refusal(malformed) when the body ends early.

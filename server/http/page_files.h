@@ -11,8 +11,8 @@ namespace hairbake {
 
 class PageFiles {
 public:
-    /// Reads all .html, .css, .js, .svg and .png files of the folder that clients/web/stage.mjs makes. An empty path means
-    /// no page. In index.html, "{assets}" becomes the address of the other files, which holds their digest.
+    /// Reads all .html, .css, .js, .svg and .png files of the folder that clients/web/stage.mjs makes. An empty path
+    /// means no page. In index.html, "{assets}" becomes the address of the other files, which holds their digest.
     /// Throws Error(usage) when there is no index.html.
     explicit PageFiles(const std::filesystem::path& folder);
 

@@ -19,8 +19,8 @@ HttpReply cached_json(const HttpRequest& request, std::string json);
 /// The same for a text whose digest is known.
 HttpReply cached_json(const HttpRequest& request, std::string json, const std::string& digest);
 
-/// A blob; its digest is its strong ETag. Understands If-None-Match, If-Range and one Range; a request with several ranges
-/// gets the whole blob.
+/// A blob; its digest is its strong ETag. Understands If-None-Match, If-Range and one Range; a request with several
+/// ranges gets the whole blob.
 HttpReply file_reply(const HttpRequest& request, OpenBlob blob, const std::string& digest, const std::string& type);
 
 /// The same for a text with the ETag `digest`.

@@ -29,8 +29,8 @@ public:
     Router(std::vector<Route> routes, Access& access, BodyPlaces& places)
         : routes_(std::move(routes)), access_(access), places_(places) {}
 
-    /// Finds the route, checks access and the body's framing, limit, type and place, and calls the handler. Answers 404,
-    /// 405, 429 and OPTIONS itself. All failures become problem+json.
+    /// Finds the route, checks access and the body's framing, limit, type and place, and calls the handler. Answers
+    /// 404, 405, 429 and OPTIONS itself. All failures become problem+json.
     HttpReply answer(HttpRequest& request) const;
 
     const std::vector<Route>& routes() const { return routes_; }

@@ -17,8 +17,8 @@ struct Target {
     std::map<std::string, std::string> query;
 };
 
-/// Parses "/v1/bakes?limit=5" and decodes its segments. Nothing when it is not a plain absolute path: it has an empty or
-/// dotted segment, an encoded slash or control character, or a fragment.
+/// Parses "/v1/bakes?limit=5" and decodes its segments. Nothing when it is not a plain absolute path: it has an empty
+/// or dotted segment, an encoded slash or control character, or a fragment.
 std::optional<Target> read_target(const std::string& text);
 
 /// Whether a header value has a control character other than a tab.

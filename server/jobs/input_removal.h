@@ -7,8 +7,8 @@ namespace hairbake {
 
 class BlobStore;
 
-/// Deletes a model's or an environment's entry and its thumbnail, and its blob too unless a result, an entry or a name of
-/// another kind, or a thumbnail has the same bytes.
+/// Deletes a model's or an environment's entry and its thumbnail, and its blob too unless a result, an entry or a name
+/// of another kind, or a thumbnail has the same bytes.
 ///
 /// `kind` is "model" or "environment".
 /// `force`: also if done bakes or versions of names refer to it.

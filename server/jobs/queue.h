@@ -83,8 +83,8 @@ public:
     /// throws undoes everything. `request` is JSON.
     void submit_batch(const std::string& id, const std::string& request, const EachPlan& each_plan);
 
-    /// The next stage by priority, then age; blocks until there is one and it may be tried (queue_pause.h). A stage that
-    /// was queued by another version of hairbake is planned again first. Nothing after stop().
+    /// The next stage by priority, then age; blocks until there is one and it may be tried (queue_pause.h). A stage
+    /// that was queued by another version of hairbake is planned again first. Nothing after stop().
     std::optional<ClaimedStage> claim();
 
     /// Stores the handle of a worker that survives a restart of the daemon.

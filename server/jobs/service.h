@@ -79,8 +79,8 @@ public:
     void cancel(const std::string& bake);
 
     // ---- health
-    /// Empty when the store and the database can be written, workers can be started and the queue is not paused; else the
-    /// reason.
+    /// Empty when the store and the database can be written, workers can be started and the queue is not paused; else
+    /// the reason.
     std::string not_ready();
     /// What an operator should know although the service is ready: see Room::warnings().
     std::vector<std::string> warnings();

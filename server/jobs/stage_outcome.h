@@ -18,7 +18,8 @@ struct ResultTooLarge : std::runtime_error {
 };
 
 /// The end of the stage for the exception that is being handled. Only what an input causes is End::failed, and a result
-/// that is too large. A wrong result is End::died. All else is End::trouble: the machine is at fault, or has no room now.
+/// that is too large. A wrong result is End::died. All else is End::trouble: the machine is at fault, or has no room
+/// now.
 Outcome outcome_of_exception();
 
 }  // namespace hairbake

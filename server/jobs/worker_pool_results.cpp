@@ -85,8 +85,8 @@ std::string WorkerPool::checked_manifest(const ClaimedStage& stage, const fs::pa
     return text;
 }
 
-/// Bytes of what must be stored beside the result until the stage's bakes end: of one bake the inputs and the results of
-/// its stages that are done. Of several bakes the smallest sum counts; the search ends at one of at most `enough`.
+/// Bytes of what must be stored beside the result until the stage's bakes end: of one bake the inputs and the results
+/// of its stages that are done. Of several bakes the smallest sum counts; the search ends at one of at most `enough`.
 std::uint64_t WorkerPool::bytes_beside(const ClaimedStage& stage, const Sizes& sizes, std::uint64_t enough) {
     Json result = Json::array();
     for (const auto& [digest, size] : sizes) result.push_back(digest);

@@ -15,8 +15,8 @@ namespace hairbake {
 /// - wish: as in follow_task(), without `leave`.
 Outcome run_trial(Runner& runner, const std::filesystem::path& incoming, const std::function<Wish()>& wish);
 
-/// `death` (End::died, or an error of the kind `internal`) as it is when a trial is successful: then the task's input may
-/// be at fault. Else End::trouble, with the trial's failure, or End::cancelled, by the wish. Never throws.
+/// `death` (End::died, or an error of the kind `internal`) as it is when a trial is successful: then the task's input
+/// may be at fault. Else End::trouble, with the trial's failure, or End::cancelled, by the wish. Never throws.
 Outcome explain_death(Outcome death, Runner& runner, const std::filesystem::path& incoming,
                       const std::function<Wish()>& wish);
 

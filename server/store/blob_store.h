@@ -100,8 +100,8 @@ public:
     static void check(IncomingFile& file, const std::string& expected);
 
     /// Makes a file a blob by renaming it; returns whether the blob is new. The caller has synced the file and checked
-    /// its digest. A stored blob whose present bytes were not verified since the start is replaced. A blob that a client
-    /// sent once stays one that is never evicted.
+    /// its digest. A stored blob whose present bytes were not verified since the start is replaced. A blob that a
+    /// client sent once stays one that is never evicted.
     bool adopt(const std::filesystem::path& file, const std::string& digest, Origin origin);
 
     /// After a second link to a blob's file was unlinked: that changed the file's ctime, and not its bytes.

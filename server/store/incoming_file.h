@@ -16,7 +16,8 @@ namespace hairbake {
 /// Not thread-safe. The destructor removes the file unless a store has adopted it.
 class IncomingFile {
 public:
-    /// A new file of a random name in `folder`; at most `limit` bytes may be added, and they take their room of `share`.
+    /// A new file of a random name in `folder`; at most `limit` bytes may be added, and they take their room of
+    /// `share`.
     IncomingFile(const std::filesystem::path& folder, std::uint64_t limit,
                  std::optional<Room::Share> share = std::nullopt);
     ~IncomingFile();

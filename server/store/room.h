@@ -25,7 +25,8 @@ struct RoomLimits {
 };
 
 /// Refusal(full) means that stored files leave no room; Refusal(busy), that other bodies under way have it, which may
-/// be cut or refused: the client tries again. Thread-safe. May be called with database.lock() held, but not inside database.read() or write().
+/// be cut or refused: the client tries again. Thread-safe. May be called with database.lock() held, but not inside
+/// database.read() or write().
 class Room {
     struct Counters {
         std::uint64_t promised = 0;   ///< to counting bodies under way, with what they received
@@ -49,8 +50,8 @@ public:
         ~Share() { give_back(); }
 
         /// Call it before `bytes` more are written. Evicts results when these bytes need their room.
-        /// Throws Refusal(full or busy) when there is no room. A body whose length was announced gets here only if the room was
-        /// lost meanwhile: a result was stored, or another program filled the disk.
+        /// Throws Refusal(full or busy) when there is no room. A body whose length was announced gets here only if the
+        /// room was lost meanwhile: a result was stored, or another program filled the disk.
         void grow(std::uint64_t bytes);
 
         /// The body's bytes are of a blob that is stored no longer: they count from now on.
@@ -77,7 +78,8 @@ public:
 
     /// For a body of `announced` bytes, or of unknown length (chunks).
     ///
-    /// `is_stored`: the blob is stored already, so the bytes need room on the disk alone, and only until they are checked.
+    /// `is_stored`: the blob is stored already, so the bytes need room on the disk alone, and only until they are
+    /// checked.
     /// Throws Refusal(full or busy) when the announced bytes have no room, also if all results were evicted.
     Share reserve(std::optional<std::uint64_t> announced, bool is_stored = false);
 

@@ -15,7 +15,8 @@ void check_access(const std::filesystem::path& store, const std::filesystem::pat
 void give_owner_of(const std::filesystem::path& model, int descriptor);
 
 /// Makes the folder and its missing parents.
-/// Throws Error(bad_input) with the path, the reason and what to do when that is forbidden or when a file is in the way.
+/// Throws Error(bad_input) with the path, the reason and what to do when that is forbidden or when a file is in the
+/// way.
 /// Throws as throw_store_error() otherwise.
 void make_store_folder(const std::filesystem::path& store, const std::filesystem::path& folder);
 

@@ -104,8 +104,8 @@ std::jthread watch_for_stop(hairbake::Progress& progress) {
     });
 }
 
-/// Whether the machine is at fault, and not the input or the request. Libraries name no number of the system's when they
-/// cannot start a thread; their messages make an internal error or seem to be about the file.
+/// Whether the machine is at fault, and not the input or the request. Libraries name no number of the system's when
+/// they cannot start a thread; their messages make an internal error or seem to be about the file.
 bool is_of_machine(const Error& error) {
     if (error.system_error() == ENOMEM && hairbake::memory_limit_refuses(largest_stack)) return false;
     if (error.system_error() != 0) return true;

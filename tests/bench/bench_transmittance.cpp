@@ -3,7 +3,8 @@
 //   bench_transmittance [--quick]      (--quick: models of 200,000 vertices, 1,024 reference directions)
 //   bench_transmittance --speed        (the speed alone; with --quick after it: 200,000 vertices)
 //   bench_transmittance --opacity-maps (layered deep opacity maps beside the volume method, 200,000 vertices)
-//   bench_transmittance --presets      (draft, default and final on ten grooms; with --quick after it: 200,000 vertices)
+//   bench_transmittance --presets      (draft, default and final on ten grooms; with --quick after it: 200,000
+// vertices)
 //   bench_transmittance --occluder     (the accuracy and time with an occluder alone)
 //   bench_transmittance --directional  (harmonics, bent cones and receivers alone; with --quick after it: 200,000
 //                                       vertices)

@@ -14,8 +14,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Whether hairbake runs there and has blocked SIGINT, SIGTERM and, unless ignored, SIGHUP, and these alone: from then on a signal is seen to.
-/// Before that it ends the program as it ends any other; a library that starts up blocks all signals for a moment.
+/// Whether hairbake runs there and has blocked SIGINT, SIGTERM and, unless ignored, SIGHUP, and these alone: from then
+/// on a signal is seen to. Before that it ends the program as it ends any other; a library that starts up blocks all
+/// signals for a moment.
 bool is_ready(pid_t child, bool without_hangup) {
     const unsigned long long blocked =
         (1ull << (SIGINT - 1)) | (1ull << (SIGTERM - 1)) | (without_hangup ? 0 : 1ull << (SIGHUP - 1));

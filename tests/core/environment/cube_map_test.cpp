@@ -28,7 +28,8 @@ TEST(CubeMap, TexelSolidAnglesSumToTheSphere) {
         EXPECT_NEAR(6 * std::accumulate(angles.begin(), angles.end(), 0.0), 4 * std::numbers::pi, 1e-12) << size;
     }
     const std::vector<double> angles = cube_texel_solid_angles(16);
-    // docs/math.md, "Solid angles": the largest texel (centre) over the smallest (corner) is 4.506, given to four digits.
+    // docs/math.md, "Solid angles": the largest texel (centre) over the smallest (corner) is 4.506, given to four
+    // digits.
     EXPECT_NEAR(*std::max_element(angles.begin(), angles.end()) / *std::min_element(angles.begin(), angles.end()),
                 4.506, 5e-4);
 }

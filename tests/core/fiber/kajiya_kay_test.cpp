@@ -34,7 +34,8 @@ TEST(KajiyaKay, VectorsAndAnglesAgreeAndTheMirrorDirectionGivesOne) {
             // Powers of 5 enlarge rounding fivefold.
             EXPECT_NEAR(kajiya_kay_specular(t, l, e, 5), kajiya_kay_specular(light, eye, 5), 5e-15);
         }
-    // theta_eye = pi - theta_light is the mirror cone (docs/math.md, "The Kajiya-Kay kernels"): exactly one for any exponent.
+    // theta_eye = pi - theta_light is the mirror cone (docs/math.md, "The Kajiya-Kay kernels"): exactly one for any
+    // exponent.
     EXPECT_NEAR(kajiya_kay_specular(t, at_angle(0.8, 0), at_angle(pi - 0.8, 2), 64), 1, 1e-13);
     // The retro direction is not lit although 64 is even: the clamp that Xing's equations lack.
     EXPECT_EQ(kajiya_kay_specular(t, at_angle(0.2, 0), at_angle(0.2, 0), 64), 0);
@@ -74,7 +75,8 @@ TEST(KajiyaKay, SpecularZonalCoefficientsMatchQuadrature) {
 TEST(KajiyaKay, SpecularConstantsHaveTheirClosedForms) {
     // p = 5, theta' = pi/2: 2 pi * integral of sin^6 = 2 pi * 5 pi / 16 = 5 pi^2 / 8.
     EXPECT_NEAR(specular_zonal(1, 5, pi / 2)[0], 5 * pi * pi / 8, 1e-12);
-    // theta' on the axis: 2 pi * integral over a hemisphere of cos^p sin = 2 pi / (p + 1) (docs/math.md, "The irradiance maps").
+    // theta' on the axis: 2 pi * integral over a hemisphere of cos^p sin = 2 pi / (p + 1) (docs/math.md, "The
+    // irradiance maps").
     for (const double p : {0.0, 1.0, 5.0, 64.0, 4096.0}) {
         EXPECT_NEAR(specular_zonal(1, p, 0)[0], 2 * pi / (p + 1), 1e-12);
         EXPECT_NEAR(specular_zonal(1, p, pi)[0], 2 * pi / (p + 1), 1e-12);
@@ -88,8 +90,8 @@ TEST(KajiyaKay, ReversingTheViewFlipsOddBands) {
 }
 
 TEST(KajiyaKay, BandsHoldTheEnergyOfTheKernel) {
-    // Parseval: sum lambda_l^2 (2l + 1) / (4 pi) = integral of k^2. docs/math.md, "Spherical harmonics": 24 bands hold 99.99 % at p = 64;
-    // the sine's six coefficients of l = 0, 2 hold 99.756 %.
+    // Parseval: sum lambda_l^2 (2l + 1) / (4 pi) = integral of k^2. docs/math.md, "Spherical harmonics": 24 bands hold
+    // 99.99 % at p = 64; the sine's six coefficients of l = 0, 2 hold 99.756 %.
     const auto energy = [](const std::vector<double>& lambda) {
         double sum = 0;
         for (std::size_t l = 0; l < lambda.size(); ++l) sum += lambda[l] * lambda[l] * (2.0 * double(l) + 1) / (4 * pi);

@@ -1,6 +1,6 @@
 // The accuracy table, on a fixed sample of texels (bench_irradiance has all of them): RMS over the largest
-// value of the lobe's maps at p = 64 against the sum over every pixel; exact <= 0.3 %, sh auto <= 1 % and within its own
-// prediction, for the diffuse and for the specular maps.
+// value of the lobe's maps at p = 64 against the sum over every pixel; exact <= 0.3 %, sh auto <= 1 % and within its
+// own prediction, for the diffuse and for the specular maps.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

@@ -41,7 +41,8 @@ TEST(LookUp, AtTexelsAndMapAnglesItGivesTheTexels) {
 }
 
 TEST(InterpolationBound, ItHoldsForASunAndIsNotMuchAboveThePublishedWorstCase) {
-    // docs/math.md, "The irradiance maps": worst error for a sun of flux 1 by M: 0.994, 0.711, 0.266, 0.074. The bound adds 2 %.
+    // docs/math.md, "The irradiance maps": worst error for a sun of flux 1 by M: 0.994, 0.711, 0.266, 0.074. The bound
+    // adds 2 %.
     const EnvironmentMap map = testing::one_texel_sun(256, 100, 50, {1, 1, 1});
     const std::pair<int, double> published[] = {{4, 0.994}, {8, 0.711}, {16, 0.266}, {32, 0.074}};
     for (const auto& [m, worst] : published) {

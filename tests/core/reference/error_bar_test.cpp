@@ -118,7 +118,8 @@ TEST(MeasureError, OfNoVerticesIsEmpty) {
 }
 
 TEST(MeasureError, CountsApartTheVerticesThatAreAWidthAwayFromOtherStrands) {
-    // Two parallel strands, each of whose vertices is 0.75 widths from the other's surface, and a lone one: 30 vertices, 10 of them clear.
+    // Two parallel strands, each of whose vertices is 0.75 widths from the other's surface, and a lone one: 30
+    // vertices, 10 of them clear.
     StrandModel model;
     for (const double x : {0.0, 0.25, 5.0}) model.add(straight({x, 0, 0}, {x, 9, 0}, 9), 0.2);
     const StrandGeometry strands = model.geometry();

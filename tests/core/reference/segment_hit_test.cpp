@@ -130,10 +130,10 @@ TEST(SegmentHit, ATaperedSegmentIsTheHullOfItsTwoSpheres) {
 
 TEST(SegmentHit, LongThinStrandsInABallLetThroughWhatTheMeanFieldSays) {
     // 20,000 parallel strands of random places in a unit ball. Strands that cross the ball at the distance u from its
-    // middle are 2 sqrt(1 - u^2) long; with N of them over the disc of the ball (area pi) and width w, the optical depth
-    // from the centre across them over the way s is N w s / pi (each square of the disc has N / pi strands), so at the
-    // angle a to the axis sin(a) N w / pi for all s = 1. The mean of exp(-k sin a) over the sphere, k = N w / pi, is
-    // found by Simpson's rule. w is 1.6e-4: a segment is 8,000 times longer than wide.
+    // middle are 2 sqrt(1 - u^2) long; with N of them over the disc of the ball (area pi) and width w, the optical
+    // depth from the centre across them over the way s is N w s / pi (each square of the disc has N / pi strands), so
+    // at the angle a to the axis sin(a) N w / pi for all s = 1. The mean of exp(-k sin a) over the sphere, k = N w /
+    // pi, is found by Simpson's rule. w is 1.6e-4: a segment is 8,000 times longer than wide.
     Random random(3);
     StrandModel model;
     constexpr int count = 20000;

@@ -63,10 +63,10 @@ TEST(TracedTransmittance, OfAStraightStrandOfManyClosePointsIsOne) {
 }
 
 TEST(TracedTransmittance, DistantLoopsOfACurlBlock) {
-    // A helix of radius R = 30 widths and a pitch of 4 widths: a vertex sees the neighbouring turns. Its own turn within
-    // 8 widths does not count; the turn above and the one below, 120 widths and more along the strand, do. In the
-    // cylinder's tangent plane they are bars of the width w at the distances 4 w, 8 w, ... to both sides, which hide
-    // asin(w / 2d) / pi each of the circle across them, 0.08 for the nearest pair alone.
+    // A helix of radius R = 30 widths and a pitch of 4 widths: a vertex sees the neighbouring turns. Its own turn
+    // within 8 widths does not count; the turn above and the one below, 120 widths and more along the strand, do. In
+    // the cylinder's tangent plane they are bars of the width w at the distances 4 w, 8 w, ... to both sides, which
+    // hide asin(w / 2d) / pi each of the circle across them, 0.08 for the nearest pair alone.
     StrandModel model;
     std::vector<Vec3d> points;
     constexpr int turns = 11, steps = 96;

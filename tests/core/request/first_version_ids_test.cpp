@@ -14,8 +14,9 @@ struct Pin {
 };
 
 /// Printed by a program of today with the preset v1. They differ from those that a program of that commit printed in
-/// nothing but the algorithm versions of the two stages: 2 and 2 then, 3 and 3 now (CHANGELOG.md). Digests of the inputs
-/// are "aa" (hair), "bb" (occluder), "cc" (receiver), "dd" (environment), as far as the request names these files.
+/// nothing but the algorithm versions of the two stages: 2 and 2 then, 3 and 3 now (CHANGELOG.md). Digests of the
+/// inputs are "aa" (hair), "bb" (occluder), "cc" (receiver), "dd" (environment), as far as the request names these
+/// files.
 const Pin pins[] = {
     {R"({"hair": "h", "environment": "e"})", "c1b93e1247eec446d866362dcf39000f729c9b95404049b3f2789db143c25f24",
      "31f5226c9db69f63b4093cc8ca44e94936fe98e9b68eeea0ec6b2f747e7fe33b",

@@ -26,8 +26,8 @@ StrandGeometry lone_strand(Random& random, double width, int segments) {
 }
 
 /// What a lone straight strand may lack of the true A, which is 1, divided by w/h. What is left after the correction
-/// scatters with the strand's place in its voxels by about 0.02 w/h; the worst of thousands of vertices lacks 0.16 w/h. It is
-/// one-sided because A is at most 1.
+/// scatters with the strand's place in its voxels by about 0.02 w/h; the worst of thousands of vertices lacks 0.16 w/h.
+/// It is one-sided because A is at most 1.
 constexpr double lone_strand_error = 0.2;
 
 TEST(Transmittance, OfALoneStraightStrandIsOne) {
@@ -92,8 +92,9 @@ OwnDepth own_depth(double ratio, int strand_count) {
 }
 
 TEST(OwnShadow, IsWhatALoneStrandTakesInTheSweep) {
-    // The strand takes about 0.6 w/h in the sweep and truly nothing. What is left is 0.02 w/h in the mean (the table has
-    // a mean sine for each voxel, not the sine of each direction) and scatters by up to 0.04 w/h with the strand's place.
+    // The strand takes about 0.6 w/h in the sweep and truly nothing. What is left is 0.02 w/h in the mean (the table
+    // has a mean sine for each voxel, not the sine of each direction) and scatters by up to 0.04 w/h with the strand's
+    // place.
     for (const double ratio : {0.01, 0.25, 0.5}) {
         const OwnDepth own = own_depth(ratio, 100);
         EXPECT_NEAR(own.middle, 0, 0.02) << ratio;

@@ -27,8 +27,8 @@ StrandGeometry square_lattice(int n, int segments = 8) {
 double spacing(const StrandGeometry& strands) { return strand_spacing(strands, Progress()); }
 
 TEST(StrandSpacing, OfStrandsInASquareLatticeIsTheLatticesSpacing) {
-    // Strands closer together than a cell (1/32) fill all cells: V is that of the bounds, whose sides are 1 - 1/n, 1 - 1/n
-    // and 1, and less than one cell more on each of two sides.
+    // Strands closer together than a cell (1/32) fill all cells: V is that of the bounds, whose sides are 1 - 1/n, 1 -
+    // 1/n and 1, and less than one cell more on each of two sides.
     for (const int n : {40, 64, 100}) {
         const double side = 1 - 1.0 / n, found = spacing(square_lattice(n));
         EXPECT_GT(found, side / n * 0.999) << n;
