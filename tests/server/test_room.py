@@ -49,6 +49,20 @@ def eventually(holds):
 
 
 class RoomTest(unittest.TestCase):
+    def fill_budget(self, d, stack, kind):
+        """Leaves 100 bytes of room, with the usual hair and an input, an upload or a body under way (until `stack` ends).
+        Returns the hair's digest, and the path whose DELETE makes room, or None for a body."""
+        hair, data = d.put(hair_bytes()), os.urandom(BUDGET - len(hair_bytes()) - 100)
+        if kind == "input":
+            return hair, f"/v1/blobs/{d.put(data)}"
+        if kind == "upload":
+            filler = d.create_upload(data + b"the rest").headers["Location"]
+            self.assertEqual(d.append(filler, 0, data).status, 204)
+            return hair, filler
+        stack.enter_context(under_way(d, head("PUT", f"/v1/blobs/{'0' * 64}", len(data)) + data[:-1]))
+        eventually(lambda: [f.stat().st_size for f in (d.path / "store/tmp").iterdir()] == [len(data) - 1])
+        return hair, None
+
     def assert_full(self, reply):
         self.assertEqual((reply.status, reply.headers["Content-Type"]), (507, "application/problem+json"), reply.body)
         self.assertEqual(reply.json["type"], "urn:hairbake:problem:full")
@@ -153,15 +167,7 @@ class RealBytes(RoomTest):
         # Relatives of a budget that inputs fill: an unfinished upload fills it, and a body under way.
         for name in ("input", "upload", "body"):
             with self.subTest(name), Daemon(config=SMALL) as d, contextlib.ExitStack() as stack:
-                hair, data = d.put(hair_bytes()), os.urandom(BUDGET - len(hair_bytes()) - 100)
-                if name == "input":
-                    filler = f"/v1/blobs/{d.put(data)}"
-                elif name == "upload":
-                    filler = d.create_upload(data + b"the rest").headers["Location"]
-                    self.assertEqual(d.append(filler, 0, data).status, 204)
-                else:
-                    stack.enter_context(under_way(d, head("PUT", f"/v1/blobs/{'0' * 64}", len(data)) + data[:-1]))
-                    eventually(lambda: [f.stat().st_size for f in (d.path / "store/tmp").iterdir()] == [len(data) - 1])
+                hair, filler = self.fill_budget(d, stack, name)
                 bake = d.ask("POST", "/v1/bakes", quick_request(hair)).json["id"]
                 self.wait_for_trouble(d, bake, "budget_mb")
                 self.assertIn(d.ask("GET", f"/v1/bakes/{bake}").json["state"], ("queued", "running"))
@@ -495,16 +501,7 @@ exec {PROGRAMS / "hairbake-worker"} "$@"
         for name in ("input", "upload", "body"):
             with self.subTest(name), Daemon(config=SMALL) as d, contextlib.ExitStack() as stack:
                 runs = self.counting(d)
-                hair, data = d.put(hair_bytes()), os.urandom(BUDGET - len(hair_bytes()) - 100)
-                filler = f"/v1/blobs/{sha256(data)}"
-                if name == "input":
-                    d.put(data)
-                elif name == "upload":
-                    filler = d.create_upload(data + b"the rest").headers["Location"]
-                    self.assertEqual(d.append(filler, 0, data).status, 204)
-                else:
-                    stack.enter_context(under_way(d, head("PUT", f"/v1/blobs/{'0' * 64}", len(data)) + data[:-1]))
-                    eventually(lambda: [f.stat().st_size for f in (d.path / "store/tmp").iterdir()] == [len(data) - 1])
+                hair, filler = self.fill_budget(d, stack, name)
                 bake = d.ask("POST", "/v1/bakes", quick_request(hair)).json["id"]
                 eventually(lambda: self.troubles(d) >= 3)
                 self.assertEqual(runs(), 1)
