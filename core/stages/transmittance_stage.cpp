@@ -1,7 +1,6 @@
 // Computes A, the other arrays that the request asks for, and A's error bar from the hair in memory.
 #include <cstdio>
 #include <iterator>
-#include <memory>
 #include <numeric>
 #include <optional>
 
@@ -12,7 +11,6 @@
 #include "core/stages/stage_table.h"
 #include "core/stages/transmittance_method.h"
 #include "core/visibility/direction_set.h"
-#include "core/volume/density_grid.h"
 #include "core/volume/hair_volume.h"
 #include "core/volume/opacity_transmittance.h"
 
@@ -45,11 +43,7 @@ Transmittance trace_all(const StrandScene& scene, const TransmittanceScene& bake
 void add_density(const TransmittanceScene& baked, const TransmittanceSettings& settings, Transmittance& transmittance,
                  Progress& progress) {
     if (!baked.keep_density || baked.strands.vertex_count() == 0) return;
-    const HairVolume volume = make_hair_volume(baked.strands, settings, progress);
-    transmittance.voxel_size = volume.frame.voxel_size;
-    transmittance.voxel_reason = volume.frame.reason;
-    transmittance.occupied_voxels = volume.bricks.occupied_voxels;
-    transmittance.density = std::make_shared<const DensityGrid>(volume);
+    describe_voxels(make_hair_volume(baked.strands, settings, progress), true, transmittance);
 }
 
 /// Runs `method`. Makes `scene` where that is trace.

@@ -16,17 +16,10 @@ namespace {
 /// One voxel while it is filled: the six components, padded to a power of two.
 using Tensor = std::array<float, 8>;
 
-/// A strand crosses a ray's way through a voxel at most once. The voxel then lets 1 - f through, not e^-f, where f is
-/// opacity * width * crossing length * sine / h^2. -ln(1 - f) = f (1 + f / 2 + ...). The average of f / 2, weighted
-/// with f, over random lines through a cube is (opacity * width / h) * chord / 2 * (2/3) / (pi/4). There chord = 0.897
-/// is the cube's mean chord through a random point. With this term the mean over random placements is
-/// e^-(mean extinction), as it must be: E[(1 - f)^n] = e^(-f mean n).
-constexpr float disjoint_share = 0.381f;
-
 /// Adds the tensor of a piece: weight * length * t t^T.
 void add_piece(const StrandPiece& piece, Tensor& sum) {
     const Vec3f& step = piece.step;
-    const Vec3f s = piece.weight * (1 + disjoint_share * piece.weight) / length(step) * step;
+    const Vec3f s = deposited_weight(piece.weight) / length(step) * step;
     const Tensor added{s.x * step.x, s.y * step.y, s.z * step.z, s.x * step.y, s.x * step.z, s.y * step.z, 0, 0};
     for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += added[c];
 }
@@ -38,8 +31,7 @@ float mixing_factor(const Tensor& t) {
     const float tr = t[0] + t[1] + t[2];
     const float square = t[0] * t[0] + t[1] * t[1] + t[2] * t[2] + 2 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]);
     const float combed = std::clamp((square / (tr * tr) - 1.0f / 3) * 1.5f, 0.0f, 1.0f);
-    constexpr float isotropic = std::numbers::pi_v<float> / 4 * 1.22474487f;  // pi/4 * sqrt(3/2)
-    return isotropic + (1 - isotropic) * combed;
+    return isotropic_sine + (1 - isotropic_sine) * combed;
 }
 
 /// Larger values are opaque many times over; 60,000 stays below infinity after rounding to a half float.

@@ -5,15 +5,14 @@
 #include <numbers>
 
 #include "core/visibility/direction_set.h"
+#include "core/volume/extinction_bricks.h"
 
 namespace hairbake {
 namespace {
 
-constexpr float reach_along = 3;    // voxels of arc on each side of the vertex
-constexpr float shortest = 0.125f;  // voxels; shorter pieces are taken together
-constexpr float surplus = 0.381f;   // docs/math.md, section 8: the deposit of a strand that fills much of a voxel
-/// The mean sine of isotropic directions over the root of the mean squared sine, for the vertex's own voxel.
-const float isotropic_sine = std::numbers::pi_v<float> / 4 / std::sqrt(2.0f / 3);
+constexpr float reach_along = 3;     // voxels of arc on each side of the vertex
+constexpr int most_segments = 1024;  // on each side: so the work stays linear, however many points a voxel has
+constexpr float shortest = 0.125f;   // voxels; shorter pieces are taken together
 /// Half of the variance of the own strand's depth over directions, divided by its squared mean: the mean of exp(-depth)
 /// is exp(-(mean - variance / 2)). tests/core/volume/lone_strands_test.cpp checks it.
 constexpr float half_variance = 0.12f;
@@ -25,7 +24,10 @@ std::array<double, 5> place_of(int n) {
     constexpr double ratios[5] = {0.8566748838545029, 0.7338918566271260, 0.6287067210378087, 0.5385972572236101,
                                   0.4614027427763899};
     std::array<double, 5> place;
-    for (std::size_t i = 0; i < 5; ++i) place[i] = std::fmod(0.5 + n * ratios[i], 1.0);
+    for (std::size_t i = 0; i < 5; ++i) {
+        const double sum = 0.5 + n * ratios[i];
+        place[i] = sum - std::floor(sum);
+    }
     return place;
 }
 
@@ -141,8 +143,9 @@ void OwnShadow::depths(const StrandGeometry& strands, const GridFrame& frame, co
     for (const int way : {1, -1}) {
         Vec3f begin = x;
         float arc = 0, mass = 0;  // of the pieces since `begin`
+        int walked = 0;           // segments
         for (std::uint32_t from = v; arc < reach_along; from += static_cast<std::uint32_t>(way)) {
-            if (way < 0 && from == 0) break;
+            if (walked++ == most_segments || (way < 0 && from == 0)) break;
             const std::uint32_t segment = way > 0 ? from : from - 1;
             if (strands.segments[segment] == Segment::none) break;
             if (strands.segments[segment] != Segment::solid) continue;
@@ -151,7 +154,7 @@ void OwnShadow::depths(const StrandGeometry& strands, const GridFrame& frame, co
             const float opacity = 0.5f * (strands.opacities[segment] + strands.opacities[segment + 1]);
             const float g = opacity * 0.5f * (strands.widths[segment] + strands.widths[segment + 1]) * inverse_h;
             const float span = length(whole);
-            mass += g * (1 + surplus * g) * length(end - frame.to_grid(strands.positions[segment + (way > 0 ? 0 : 1)]));
+            mass += deposited_weight(g) * length(end - frame.to_grid(strands.positions[segment + (way > 0 ? 0 : 1)]));
             if (span < shortest) continue;
             const int parts = std::max(1, static_cast<int>(std::ceil(span)));
             const Vec3f step = whole / static_cast<float>(parts), axis = whole / span;

@@ -27,7 +27,8 @@ public:
         float in_window = 0;  ///< the part of F_grid, the near field's sum over the grid
     };
 
-    /// The depths of vertex v's own strand: its pieces within 3 voxels along it.
+    /// The depths of vertex v's own strand: its pieces within 3 voxels along it, of at most
+    /// 1,024 segments on each side.
     ///
     /// slopes: of the means, divided by their averages
     /// depths: of each mean; overwritten

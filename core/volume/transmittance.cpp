@@ -93,6 +93,13 @@ void evaluate(const FunctionalInput& input, const HairVolume& volume, Progress& 
 
 }  // namespace
 
+void describe_voxels(const HairVolume& volume, bool keep_density, Transmittance& transmittance) {
+    transmittance.voxel_size = volume.frame.voxel_size;
+    transmittance.voxel_reason = volume.frame.reason;
+    transmittance.occupied_voxels = volume.bricks.occupied_voxels;
+    if (keep_density) transmittance.density = std::make_shared<const DensityGrid>(volume);
+}
+
 Transmittance bake_transmittance_volume(const TransmittanceScene& scene, const TransmittanceSettings& settings,
                                         Progress& progress) {
     const auto directions = make_directions(settings.direction_set, settings.directions, settings.seed);
@@ -106,9 +113,6 @@ Transmittance bake_transmittance_volume(const TransmittanceScene& scene, const T
     }
     ProgressPart building = progress.part(0, 0.3), evaluating = progress.part(0.3, 1);
     const HairVolume volume = make_hair_volume(scene.strands, settings, building);
-    result.voxel_size = volume.frame.voxel_size;
-    result.occupied_voxels = volume.bricks.occupied_voxels;
-    result.voxel_reason = volume.frame.reason;
     if (volume.frame.reason == VoxelReason::width && (settings.voxels || settings.voxel_size))
         result.warnings.push_back(
             "the strands are too wide for the voxels asked for: a voxel is twice the 95th "
@@ -125,7 +129,7 @@ Transmittance bake_transmittance_volume(const TransmittanceScene& scene, const T
     if (scene.receiver) receiver.vectors = scene.receiver->normals;
     if (receiver_shadow) receiver.shadow = &*receiver_shadow;
     evaluate({scene, settings, directions, vertices, scene.receiver ? &receiver : nullptr}, volume, evaluating, result);
-    if (scene.keep_density) result.density = std::make_shared<const DensityGrid>(volume);
+    describe_voxels(volume, scene.keep_density, result);
     progress.report(1);
     return result;
 }

@@ -16,6 +16,7 @@
 namespace hairbake {
 
 class DensityGrid;
+struct HairVolume;
 
 /// The input of the transmittance stage. Refers to its parts, which must outlive it.
 struct TransmittanceScene {
@@ -50,6 +51,9 @@ struct Transmittance {
     std::shared_ptr<const DensityGrid> density;  ///< the extinction of the sweep; null unless keep_density and `volume`
     std::vector<std::string> warnings;           ///< e.g. that the strands are too wide for the voxels asked for
 };
+
+/// Sets the facts about the voxels, and the density where the scene keeps it.
+void describe_voxels(const HairVolume& volume, bool keep_density, Transmittance& transmittance);
 
 /// Mean-field transmittance of every vertex:
 ///   A(x) = (1/N) sum over k of exp(-Omega(x, w_k)),  Omega = opacity * integral of extinction,

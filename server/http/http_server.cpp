@@ -353,8 +353,8 @@ private:
     const std::string address_;
     const Descriptor listening_;
     Lingering lingering_{lingering, most_lingering};
-    std::optional<ConnectionThreads>
-        threads_;  ///< the last member: they use the others, and start when those are ready
+    /// The last member: the threads use the others, and start when those are ready.
+    std::optional<ConnectionThreads> threads_;
 };
 
 HttpServer::HttpServer(const HttpServerSettings& settings, Handler handler)
