@@ -95,9 +95,8 @@ void Access::check_origin(const HttpRequest& request) const {
 void Access::check(HttpRequest& request, Scope scope) {
     if (tokens_.empty() && is_forwarded(request))
         deny(403, "no-tokens",
-             "the daemon has no tokens in its configuration, so it serves its own machine alone and refuses what a "
-             "proxy "
-             "forwards; `hairbaked token new` makes a token");
+             "the daemon has no tokens in its configuration, so it serves its own machine alone and refuses "
+             "what a proxy forwards; `hairbaked token new` makes a token");
     if (scope == Scope::open) return;
     if (tokens_.empty()) {
         if (!is_loopback(request.header("Host").value_or("")))

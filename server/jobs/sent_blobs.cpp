@@ -19,9 +19,8 @@ constexpr const char* without_references =
     "AND NOT EXISTS(SELECT 1 FROM inputs i WHERE i.sha256 = bl.sha256) "
     "AND NOT EXISTS(SELECT 1 FROM inputs i WHERE i.thumbnail = bl.sha256) "
     "AND NOT EXISTS(SELECT 1 FROM names n WHERE n.sha256 = bl.sha256) "
-    "AND NOT EXISTS(SELECT 1 FROM stage_inputs i JOIN bake_stages m ON m.stage = i.stage JOIN bakes b ON b.seq = "
-    "m.bake "
-    "WHERE i.sha256 = bl.sha256 AND b.state IN ('queued', 'running', 'done')) ";
+    "AND NOT EXISTS(SELECT 1 FROM stage_inputs i JOIN bake_stages m ON m.stage = i.stage "
+    "JOIN bakes b ON b.seq = m.bake WHERE i.sha256 = bl.sha256 AND b.state IN ('queued', 'running', 'done')) ";
 
 Json entry(const SqlRow& row) {
     return {{"sha256", row.text(0)},

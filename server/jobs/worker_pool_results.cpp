@@ -26,8 +26,17 @@ namespace fs = std::filesystem;
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr std::size_t most_remembered = 1000;        // results that found no room
-constexpr std::uint64_t least_growth = 64 << 10;     // of the free bytes of a disk; the database takes and gives less
+constexpr std::size_t most_remembered = 1000;     // results that found no room
+constexpr std::uint64_t least_growth = 64 << 10;  // of the free bytes of a disk; the database takes and gives less
+constexpr const char* waiting_bakes =             // of a stage
+    "SELECT m.bake FROM bake_stages m JOIN bakes b ON b.seq = m.bake "
+    "WHERE m.stage = ? AND b.state IN ('queued', 'running')";
+constexpr const char* needed_bytes =  // by a bake, without a list of digests
+    "SELECT sum(bytes) FROM blobs WHERE sha256 IN ("
+    "SELECT i.sha256 FROM bake_stages m JOIN stage_inputs i USING(stage) WHERE m.bake = ?1 "
+    "UNION SELECT f.sha256 FROM bake_stages m JOIN stages d ON d.key = m.stage JOIN stage_files f USING(stage) "
+    "WHERE m.bake = ?1 AND d.state = 'done') "
+    "AND sha256 NOT IN (SELECT value FROM json_each(?2))";
 constexpr std::size_t longest_manifest = 512 << 10;  // bytes; the longest ones have some 50 kB
 
 /// A missing file in a folder that is there has not its digest, nor has a folder or a pipe.
@@ -93,25 +102,12 @@ std::uint64_t WorkerPool::bytes_beside(const ClaimedStage& stage, const Sizes& s
     const std::string digests = result.dump();
     std::optional<std::uint64_t> least;
     database_.read([&](Sql& sql) {
-        sql.each(
-            "SELECT m.bake FROM bake_stages m JOIN bakes b ON b.seq = m.bake WHERE m.stage = ? AND b.state IN "
-            "('queued', "
-            "'running')",
-            {stage.key}, [&](const SqlRow& bake) {
-                const SqlRow sum =
-                    sql.rows(
-                           "SELECT sum(bytes) FROM blobs WHERE sha256 IN (SELECT i.sha256 FROM bake_stages m JOIN "
-                           "stage_inputs i USING(stage) WHERE m.bake = ?1 UNION SELECT f.sha256 FROM bake_stages m "
-                           "JOIN "
-                           "stages d ON d.key = m.stage JOIN stage_files f USING(stage) WHERE m.bake = ?1 AND d.state "
-                           "= "
-                           "'done') AND sha256 NOT IN (SELECT value FROM json_each(?2))",
-                           {bake.integer(0), digests})
-                        .at(0);
-                const auto bytes = static_cast<std::uint64_t>(sum.integer(0));
-                least = std::min(least.value_or(bytes), bytes);
-                return *least > enough;
-            });
+        sql.each(waiting_bakes, {stage.key}, [&](const SqlRow& bake) {
+            const SqlRow sum = sql.rows(needed_bytes, {bake.integer(0), digests}).at(0);
+            const auto bytes = static_cast<std::uint64_t>(sum.integer(0));
+            least = std::min(least.value_or(bytes), bytes);
+            return *least > enough;
+        });
     });
     return least.value_or(0);
 }
@@ -124,8 +120,7 @@ void WorkerPool::check_fits(const ClaimedStage& stage, const Sizes& sizes) {
     const std::uint64_t budget = room_.budget();
     const auto refuse = [&](const std::string& found) {
         throw ResultTooLarge(found + ": budget_mb is " + std::to_string(budget >> 20) +
-                             "; ask for a smaller result, or "
-                             "raise budget_mb");
+                             "; ask for a smaller result, or raise budget_mb");
     };
     const std::string result = "the result of " + std::to_string(bytes) + " bytes";
     if (bytes > budget) refuse(result + " is larger than the whole store may be");
