@@ -1,16 +1,24 @@
 #include "core/stages/transmittance_method.h"
 
+#include <algorithm>
+
 namespace hairbake {
 
-ChosenMethod choose_method(TransmittanceMethod asked, std::size_t vertices, std::size_t receiver_positions) {
-    if (asked != TransmittanceMethod::automatic) return {asked, "as the request asks"};
-    const std::size_t points = vertices + receiver_positions;
-    const std::string allowed = std::to_string(most_traced_points);
+std::size_t most_traced_points(int directions) {
+    const double n = directions;
+    return static_cast<std::size_t>(std::clamp(0.02 * n * n * n, 5'000.0, 250'000.0));
+}
+
+ChosenMethod choose_method(const TransmittanceSettings& settings, std::size_t vertices,
+                           std::size_t receiver_positions) {
+    if (settings.method != TransmittanceMethod::automatic) return {settings.method, "as the request asks"};
+    const std::size_t points = vertices + receiver_positions, most = most_traced_points(settings.directions);
+    const std::string allowed =
+        std::to_string(most) + " are traced with " + std::to_string(settings.directions) + " directions";
     std::string what = std::to_string(vertices) + " vertices";
     if (receiver_positions > 0) what += " and " + std::to_string(receiver_positions) + " positions of the receiver";
-    if (points <= most_traced_points)
-        return {TransmittanceMethod::trace, "auto: " + what + "; up to " + allowed + " are traced"};
-    return {TransmittanceMethod::volume, "auto: " + what + "; more than " + allowed + " are swept"};
+    return {points <= most ? TransmittanceMethod::trace : TransmittanceMethod::volume,
+            "auto: " + what + "; up to " + allowed};
 }
 
 int traced_directions(int directions) {

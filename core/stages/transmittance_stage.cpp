@@ -125,7 +125,7 @@ void run_transmittance_stage(StageContext& context, StagePart& part) {
         what.receiver_is_occluder = context.inputs.receiver_is_occluder();
         what.keep_density = request.wants("vdb");
         ChosenMethod chosen =
-            choose_method(settings.method, strands.vertex_count(), what.receiver ? what.receiver->positions.size() : 0);
+            choose_method(settings, strands.vertex_count(), what.receiver ? what.receiver->positions.size() : 0);
         naming_file(*request.hair, [&] { baked = transmittance_of(chosen.method, what, settings, scene, progress); });
         facts.method = chosen.method;
         facts.method_reason = std::move(chosen.reason);

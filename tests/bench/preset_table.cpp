@@ -34,7 +34,7 @@ Transmittance bake_as_asked(const StrandScene& scene, const TriangleMesh* occlud
                             const TransmittanceSettings& settings) {
     Progress progress;
     const StrandGeometry& strands = scene.strands();
-    if (choose_method(settings.method, strands.vertex_count(), 0).method != TransmittanceMethod::trace)
+    if (choose_method(settings, strands.vertex_count(), 0).method != TransmittanceMethod::trace)
         return bake_transmittance_volume({strands, occluder}, settings, progress);
     std::vector<std::uint32_t> vertices(strands.vertex_count());
     std::iota(vertices.begin(), vertices.end(), 0u);

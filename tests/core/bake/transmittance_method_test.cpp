@@ -18,23 +18,40 @@ using Method = TransmittanceMethod;
 using test_support::SmallInputs;
 
 TEST(TransmittanceMethod, AutoTracesUpToTheLimitAndSweepsBeyond) {
-    const auto method = [](std::size_t vertices, std::size_t receiver) {
-        return choose_method(Method::automatic, vertices, receiver).method;
-    };
-    EXPECT_EQ(method(0, 0), Method::trace);
-    EXPECT_EQ(method(most_traced_points, 0), Method::trace);
-    EXPECT_EQ(method(most_traced_points + 1, 0), Method::volume);
-    EXPECT_EQ(method(most_traced_points - 5, 5), Method::trace);
-    EXPECT_EQ(method(most_traced_points - 5, 6), Method::volume);
-    EXPECT_EQ(choose_method(Method::automatic, 7, 3).reason,
-              "auto: 7 vertices and 3 positions of the receiver; up to 20000 are traced");
+    TransmittanceSettings settings;
+    for (const int directions : {32, 100, 256}) {
+        settings.directions = directions;
+        const std::size_t most = most_traced_points(directions);
+        const auto method = [&](std::size_t vertices, std::size_t receiver) {
+            return choose_method(settings, vertices, receiver).method;
+        };
+        EXPECT_EQ(method(0, 0), Method::trace);
+        EXPECT_EQ(method(most, 0), Method::trace);
+        EXPECT_EQ(method(most + 1, 0), Method::volume);
+        EXPECT_EQ(method(most - 5, 5), Method::trace);
+        EXPECT_EQ(method(most - 5, 6), Method::volume);
+    }
+    settings.directions = 100;
+    EXPECT_EQ(choose_method(settings, 7, 3).reason,
+              "auto: 7 vertices and 3 positions of the receiver; up to 20000 are traced with 100 directions");
+}
+
+TEST(TransmittanceMethod, MoreDirectionsAllowMorePointsToBeTraced) {
+    EXPECT_EQ(most_traced_points(1), 5'000u);
+    EXPECT_EQ(most_traced_points(32), 5'000u);    // draft
+    EXPECT_EQ(most_traced_points(100), 20'000u);  // the default
+    EXPECT_EQ(most_traced_points(200), 160'000u);
+    EXPECT_EQ(most_traced_points(256), 250'000u);  // final
+    EXPECT_EQ(most_traced_points(4096), 250'000u);
 }
 
 TEST(TransmittanceMethod, AMethodThatIsAskedForIsTaken) {
     for (const Method method : {Method::volume, Method::trace, Method::opacity_maps})
-        for (const std::size_t vertices : {std::size_t{1}, 2 * most_traced_points}) {
-            EXPECT_EQ(choose_method(method, vertices, 0).method, method);
-            EXPECT_EQ(choose_method(method, vertices, 0).reason, "as the request asks");
+        for (const std::size_t vertices : {std::size_t{1}, std::size_t{1'000'000}}) {
+            TransmittanceSettings settings;
+            settings.method = method;
+            EXPECT_EQ(choose_method(settings, vertices, 0).method, method);
+            EXPECT_EQ(choose_method(settings, vertices, 0).reason, "as the request asks");
         }
 }
 
@@ -75,11 +92,11 @@ TEST(TransmittanceMethod, AutoIsTheTracedBakeOfASmallModelAndTheSweptOneOfALarge
 
     const fs::path file = inputs.folder / "larger.hair";
     GroomSettings groom;
-    groom.vertices = most_traced_points + 1000;
+    groom.vertices = most_traced_points(request.transmittance.directions) + 1000;
     write_hair(generate_groom(groom), file);
     request.hair = file.string();
     const BakeResult larger = baked(request, Method::automatic);
-    ASSERT_GT(average(larger).size(), most_traced_points);
+    ASSERT_GT(average(larger).size(), most_traced_points(request.transmittance.directions));
     EXPECT_EQ(average(larger), average(baked(request, Method::volume)));
     EXPECT_EQ(facts(larger).method, Method::volume);
     EXPECT_EQ(facts(larger).directions, 9);
