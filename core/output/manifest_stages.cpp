@@ -123,6 +123,45 @@ Json describe(const IrradianceFacts& facts, const StagePart& part, const BakeReq
     return {{"irradiance", block}};
 }
 
+// ---- effective transmittance ---------------------------------------------------------------------------------------
+
+/// "c0 + c1 * x + c2 * (2.0 * x * x - 1.0)": the series in x = cos theta'.
+std::string cosine_series(int cosines, int first) {
+    constexpr std::string_view terms[] = {"", " * x", " * (2.0 * x * x - 1.0)", " * (4.0 * x * x - 3.0) * x",
+                                          " * (8.0 * x * x * (x * x - 1.0) + 1.0)"};
+    std::string text;
+    for (int j = 0; j < cosines; ++j)
+        text += (j > 0 ? " + " : "") + ("e" + std::to_string(first + j)) + std::string(terms[j]);
+    return text;
+}
+
+Json run_time(const EffectiveFacts& facts) {
+    const int diffuse = facts.diffuse_components;
+    const std::string ad = diffuse == 3 ? "vec3(e0, e1, e2)" : "e0";
+    const std::string formula = "float x = clamp(dot(tangent, to_eye), -1.0, 1.0); vec3 lo = Kd * " + ad +
+                                " * D + Ks * clamp(" + cosine_series(facts.cosines, diffuse) + ", 0.0, 1.0) * S;";
+    return {
+        {"words",
+         "e0, e1 ... are the array's numbers of a vertex, interpolated. D and S are the look-ups of the maps diffuse "
+         "and specular. The first numbers (Ad) multiply Kd D. The others are the terms cos(j theta') of a series in "
+         "the angle theta' between tangent and eye; its value, clamped to 0 to 1, multiplies Ks S."},
+        {"glsl", formula}};
+}
+
+Json describe(const EffectiveFacts& facts, const StagePart&, const BakeRequest&) {
+    Json lights = Json::array();
+    for (const ClusteredLight& light : facts.lights)
+        lights.push_back({{"direction", triple(light.direction)}, {"flux", triple(light.flux)}});
+    return {{"effective_transmittance",
+             {{"method", name_in(transmittance_method_names, facts.method)},
+              {"method_reason", facts.method_reason},
+              {"diffuse", facts.diffuse_components == 3 ? "rgb" : "luminance"},
+              {"cosines", facts.cosines},
+              {"tangent_face_size", facts.face_size},
+              {"run_time", run_time(facts)},
+              {"lights", std::move(lights)}}}};
+}
+
 }  // namespace
 
 Json describe_part(const StagePart& part, const BakeRequest& request) {

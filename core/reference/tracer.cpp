@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/base/assert.h"
 #include "core/base/parallel.h"
 #include "core/mesh/grounding.h"
 #include "core/reference/crossings.h"
@@ -212,6 +213,24 @@ DirectionalMeans trace_directional(const StrandScene& scene, std::span<const std
     trace_all(scene, std::move(origins), scene.occluder() != nullptr, directions, progress,
               [&](std::size_t i, std::size_t k, double t) { sums.add(i, k, t); });
     return sums.means();
+}
+
+std::vector<float> trace_weighted(const StrandScene& scene, std::span<const Vec3d> directions,
+                                  const DirectionWeights& weights, Progress& progress) {
+    HAIRBAKE_ASSERT(directions.size() == weights.directions && weights.rows.size() == scene.strands().vertex_count());
+    std::vector<RayOrigin> origins(scene.strands().vertex_count());
+    for (std::size_t v = 0; v < origins.size(); ++v) {
+        origins[v].position = scene.strands().positions[v];
+        origins[v].vertex = static_cast<std::uint32_t>(v);
+    }
+    std::vector<double> sums(origins.size() * weights.components);
+    trace_all(scene, std::move(origins), scene.occluder() != nullptr, directions, progress,
+              [&](std::size_t v, std::size_t k, double t) {
+                  const float* weight = weights.of(weights.rows[v], k);
+                  for (std::size_t c = 0; c < weights.components; ++c)
+                      sums[v * weights.components + c] += t * weight[c];
+              });
+    return {sums.begin(), sums.end()};
 }
 
 std::vector<float> trace_receiver(const StrandScene& scene, const TriangleMesh& receiver, bool receiver_is_occluder,

@@ -10,6 +10,7 @@
 #include "core/mesh/triangle_mesh.h"
 #include "core/reference/strand_scene.h"
 #include "core/visibility/direction_moments.h"
+#include "core/visibility/direction_weights.h"
 
 namespace hairbake {
 
@@ -31,6 +32,10 @@ std::vector<float> trace_transmittance(const StrandScene& scene, std::span<const
 /// The same with all results of DirectionalMeans. sh_bands: 0 to 4.
 DirectionalMeans trace_directional(const StrandScene& scene, std::span<const std::uint32_t> vertices,
                                    std::span<const Vec3d> directions, int sh_bands, bool bent_cone, Progress& progress);
+
+/// [V * components], the sums of DirectionWeights at every vertex of the scene, for as many directions as `weights` has.
+std::vector<float> trace_weighted(const StrandScene& scene, std::span<const Vec3d> directions,
+                                  const DirectionWeights& weights, Progress& progress);
 
 /// [R * 2]: mean transmittance over the hemisphere at the positions of `receiver`, plain and cosine-weighted
 /// (HemisphereSums). Directions below a point's plane are not traced. A point has no strand of its own: inside a strand

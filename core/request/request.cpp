@@ -120,6 +120,20 @@ void check_occluder(const BakeRequest& request) {
         refuse("occluder", "given to the method opacity_maps", "an occluder with the methods auto, volume and trace");
 }
 
+void check_effective(const BakeRequest& request) {
+    const EffectiveSettings& settings = request.effective_transmittance;
+    check_range("effective_transmittance.lights", settings.lights, 1, 1024);
+    check_range("effective_transmittance.cosines", settings.cosines, 1, 5);
+    if (!settings.enabled) return;
+    const std::string field = "effective_transmittance.enabled";
+    if (!request.hair || !request.environment)
+        refuse(field, std::string("true without ") + (request.hair ? "environment" : "hair"),
+               "true with both hair and environment");
+    if (request.transmittance.method == TransmittanceMethod::opacity_maps)
+        refuse(field, "true with the transmittance.method opacity_maps",
+               "true with the methods auto, volume and trace");
+}
+
 void check_outputs(const BakeRequest& request) {
     const std::vector<std::string>& outputs = request.outputs;
     for (auto output = outputs.begin(); output != outputs.end(); ++output) {
@@ -153,6 +167,7 @@ void validate(const BakeRequest& request) {
     check_maps(request);
     check_irradiance(request.irradiance);
     check_occluder(request);
+    check_effective(request);
     check_outputs(request);
 }
 

@@ -8,6 +8,7 @@
 #include "core/environment/environment_settings.h"
 #include "core/fiber/fiber_settings.h"
 #include "core/hair/strand_settings.h"
+#include "core/irradiance/effective_settings.h"
 #include "core/irradiance/irradiance_settings.h"
 #include "core/visibility/transmittance_settings.h"
 
@@ -25,6 +26,7 @@ struct BakeRequest {
     EnvironmentSettings environment_settings;
     FiberSettings fiber;
     IrradianceSettings irradiance;
+    EffectiveSettings effective_transmittance;
     std::vector<std::string> outputs{"npy", "exr", "hair"};  ///< of output_formats(); each at most once
 
     /// Whether `outputs` names `format`.

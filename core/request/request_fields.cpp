@@ -145,9 +145,19 @@ std::vector<Field> irradiance_fields() {
     };
 }
 
+/// The stage is younger than the first version: with `enabled` false nothing of it is in any key.
+std::vector<Field> effective_fields() {
+    return {
+        added(boolean("effective_transmittance.enabled", AT(effective_transmittance.enabled)), false),
+        integer("effective_transmittance.lights", AT(effective_transmittance.lights)),
+        integer("effective_transmittance.cosines", AT(effective_transmittance.cosines)),
+        choice("effective_transmittance.diffuse", effective_diffuse_names, AT(effective_transmittance.diffuse)),
+    };
+}
+
 std::vector<Field> make_fields() {
     std::vector<Field> fields;
-    for (auto block : {hair_fields, fiber_fields, environment_fields, irradiance_fields})
+    for (auto block : {hair_fields, fiber_fields, environment_fields, irradiance_fields, effective_fields})
         for (Field& field : block()) fields.push_back(std::move(field));
     fields.push_back(string_list("outputs", AT(outputs)));
     return fields;

@@ -23,11 +23,26 @@ constexpr Text irradiance_inputs[] = {"environment"};
 constexpr Text irradiance_settings[] = {"irradiance", "environment_settings", "fiber"};
 constexpr Phase irradiance_phases[] = {{"irradiance", 2}};
 
+constexpr Text effective_inputs[] = {"hair", "occluder", "environment"};
+// transmittance.directions decides the method auto and the voxels auto.
+constexpr Text effective_settings[] = {"strand",
+                                       "transmittance.method",
+                                       "transmittance.directions",
+                                       "transmittance.voxels",
+                                       "transmittance.voxel_size",
+                                       "environment_settings",
+                                       "irradiance.lights",
+                                       "fiber",
+                                       "effective_transmittance"};
+constexpr Phase effective_phases[] = {{"effective_transmittance", 10}};
+
 constexpr Stage table[] = {
     {"transmittance", 4, transmittance_inputs, transmittance_settings, transmittance_phases,
      [](const BakeRequest& request) { return request.hair.has_value(); }, true, ""},
     {"irradiance", 3, irradiance_inputs, irradiance_settings, irradiance_phases,
      [](const BakeRequest& request) { return request.environment.has_value(); }, true, "irradiance"},
+    {"effective_transmittance", 1, effective_inputs, effective_settings, effective_phases,
+     [](const BakeRequest& request) { return request.effective_transmittance.enabled; }, false, ""},
 };
 
 /// The phase in which each input is read. Meshes are read with the hair that they belong to.
@@ -165,7 +180,8 @@ std::vector<Phase> planned_phases(std::span<const Stage* const> stages, const Ba
     for (const Stage* stage : stages) {
         for (Phase phase : stage->phases) {
             if (phase.name == "reference" && request.transmittance.reference_vertices == 0) continue;
-            if (phase.name == "transmittance" && request.transmittance.method == TransmittanceMethod::trace)
+            if ((phase.name == "transmittance" || phase.name == "effective_transmittance") &&
+                request.transmittance.method == TransmittanceMethod::trace)
                 phase.share *= tracing_factor;
             add(phase);
         }

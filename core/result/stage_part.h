@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/environment/light_clusters.h"
 #include "core/reference/error_bar.h"
 #include "core/request/stages.h"
 #include "core/result/map_set.h"
@@ -39,9 +40,18 @@ struct IrradianceFacts {
     double predicted_error_diffuse = 0, predicted_error_specular = 0;
 };
 
+/// Facts about the effective transmittance.
+struct EffectiveFacts {
+    TransmittanceMethod method = TransmittanceMethod::volume;  ///< the one that ran
+    std::string method_reason;
+    std::vector<ClusteredLight> lights;
+    int diffuse_components = 3, cosines = 3;
+    int face_size = 0;  ///< of the cube of tangent cells
+};
+
 /// A stage that has something to tell in the manifest adds a struct of facts here, and a function in
 /// core/output/manifest_stages.cpp that describes it.
-using StageFacts = std::variant<std::monostate, TransmittanceFacts, IrradianceFacts>;
+using StageFacts = std::variant<std::monostate, TransmittanceFacts, IrradianceFacts, EffectiveFacts>;
 
 struct StagePart {
     const Stage* stage = nullptr;

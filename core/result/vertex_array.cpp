@@ -21,6 +21,15 @@ constexpr ArrayKind table[] = {
      "transmittance", ArrayOwner::hair, ArrayLayout::vector,
      [](const BakeRequest& request) -> std::size_t { return request.hair && request.transmittance.bent_cone ? 4 : 0; },
      false},
+    {"effective_transmittance",
+     "transmittance under the bake's own light: Ad of each channel or of luminance, then As = c_0 + c_1 cos theta' + "
+     "...",
+     "effective_transmittance", ArrayOwner::hair, ArrayLayout::coefficients,
+     [](const BakeRequest& request) {
+         const EffectiveSettings& settings = request.effective_transmittance;
+         return static_cast<std::size_t>(settings.enabled ? settings.components() : 0);
+     },
+     false},
     {"receiver",
      "transmittance over the hemisphere about every receiver vertex's normal: mean, and cosine-weighted mean",
      "transmittance", ArrayOwner::receiver, ArrayLayout::vector,
@@ -41,6 +50,7 @@ std::span<const ArrayKind> array_kinds() { return table; }
 const ArrayKind& average_transmittance_kind() { return row("transmittance"); }
 const ArrayKind& transmittance_sh_kind() { return row("transmittance_sh"); }
 const ArrayKind& bent_cone_kind() { return row("bent_cone"); }
+const ArrayKind& effective_transmittance_kind() { return row("effective_transmittance"); }
 const ArrayKind& receiver_kind() { return row("receiver"); }
 
 std::vector<std::size_t> VertexArray::shape() const {

@@ -44,6 +44,7 @@ const ArrayKind* find_array_kind(std::string_view name);
 /// The kinds that other code asks for by their meaning: A, T(x, l) as spherical harmonics, the bent cone, and the
 /// shadow on the receiver.
 const ArrayKind& average_transmittance_kind();
+const ArrayKind& effective_transmittance_kind();
 const ArrayKind& transmittance_sh_kind();
 const ArrayKind& bent_cone_kind();
 const ArrayKind& receiver_kind();

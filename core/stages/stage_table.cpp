@@ -4,7 +4,7 @@
 
 namespace hairbake {
 
-StageFunction run_transmittance_stage, run_irradiance_stage;
+StageFunction run_transmittance_stage, run_irradiance_stage, run_effective_transmittance_stage;
 
 namespace {
 
@@ -16,6 +16,7 @@ struct StageCode {
 constexpr StageCode table[] = {
     {"transmittance", run_transmittance_stage},
     {"irradiance", run_irradiance_stage},
+    {"effective_transmittance", run_effective_transmittance_stage},
 };
 
 }  // namespace
