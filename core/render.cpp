@@ -112,6 +112,7 @@ std::vector<std::pair<std::string, std::string>> describe(const RenderRequest& r
 struct ModeLighting {
     VertexTransmittance average;
     DirectionalTransmittance directional;
+    EffectiveTransmittance effective;
     std::unique_ptr<FiberLighting> lighting;
 
     ModeLighting(const RenderRequest& request, const RenderInput& input, const StrandScene& scene,
@@ -131,6 +132,13 @@ struct ModeLighting {
                 directional = directional_of(request, input);
                 lighting = directional_lighting(directional, *lights);
                 break;
+            case ShadingMode::effective: {
+                const EffectiveSettings& settings = input.bake.effective_transmittance;
+                effective = {input.effective, static_cast<std::size_t>(settings.diffuse_components()),
+                             static_cast<std::size_t>(settings.cosines)};
+                lighting = effective_lighting(effective, *input.maps);
+                break;
+            }
         }
     }
     ModeLighting(const ModeLighting&) = delete;

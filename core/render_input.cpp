@@ -71,9 +71,11 @@ void read_sky(RenderInput& input, BakeProgress& progress) {
 
 /// Takes the arrays that the pictures need, as far as they are there.
 void take_arrays(std::vector<VertexArray>& arrays, RenderInput& input) {
-    const std::pair<const ArrayKind*, std::vector<float>*> wanted[] = {{&average_transmittance_kind(), &input.average},
-                                                                       {&transmittance_sh_kind(), &input.sh},
-                                                                       {&bent_cone_kind(), &input.bent_cone}};
+    const std::pair<const ArrayKind*, std::vector<float>*> wanted[] = {
+        {&average_transmittance_kind(), &input.average},
+        {&transmittance_sh_kind(), &input.sh},
+        {&bent_cone_kind(), &input.bent_cone},
+        {&effective_transmittance_kind(), &input.effective}};
     for (const auto& [kind, values] : wanted)
         if (find_array(arrays, *kind)) *values = take_values(arrays, *kind);
 }
@@ -96,14 +98,20 @@ RenderInput from_folder(const RenderRequest& request) {
                                               std::to_string(input.average.size()) + " vertices, the hair has " +
                                               std::to_string(input.hair.vertex_count()) +
                                               "; bake with npy among the outputs");
-    if (request.mode == ShadingMode::baked && shows_light(request) && !stored.maps)
+    if (request.mode == ShadingMode::effective && input.effective.empty())
+        throw Error(ErrorKind::usage,
+                    *request.result +
+                        " holds no effective transmittance; bake with effective_transmittance.enabled "
+                        "and npy among the outputs",
+                    "mode");
+    if (uses_maps(request.mode) && shows_light(request) && !stored.maps)
         throw Error(ErrorKind::usage,
                     *request.result + " holds no maps; bake with an environment and npy among the outputs", "result");
     if (stored.maps) input.maps = to_irradiance_maps(std::move(*stored.maps));
     return input;
 }
 
-/// The bake in memory that the mode needs. The irradiance maps are baked for the mode baked alone.
+/// The bake in memory that the mode needs. The irradiance maps are baked for the modes that use them.
 /// Throws Error(usage) where an input is not named.
 BakeRequest bake_for(const RenderRequest& request) {
     if (!request.bake.hair) throw Error(ErrorKind::usage, "give a result folder, or --hair and --env", "hair");
@@ -111,7 +119,8 @@ BakeRequest bake_for(const RenderRequest& request) {
         throw Error(ErrorKind::usage, "give a result folder, or --hair and --env", "environment");
     BakeRequest wanted = request.bake;
     wanted.transmittance.reference_vertices = 0;
-    if (request.mode != ShadingMode::baked || !shows_light(request)) wanted.environment.reset();
+    wanted.effective_transmittance.enabled = request.mode == ShadingMode::effective;
+    if (!uses_maps(request.mode) || !shows_light(request)) wanted.environment.reset();
     return wanted;
 }
 

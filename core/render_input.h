@@ -20,8 +20,8 @@ struct RenderInput {
     std::optional<TriangleMesh> mesh;           ///< shown
     std::optional<TriangleMesh> occluder;       ///< blocks light, with mode reference
     std::vector<float> average;                 ///< [V]
-    std::vector<float> sh, bent_cone;
-    std::optional<IrradianceMaps> maps;  ///< with mode baked, where the picture shows light
+    std::vector<float> sh, bent_cone, effective;
+    std::optional<IrradianceMaps> maps;  ///< with a mode that uses maps, where the picture shows light
     std::vector<std::string> warnings;
 };
 

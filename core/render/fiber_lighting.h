@@ -47,6 +47,11 @@ public:
 /// (irradiance/lookup.h).
 std::unique_ptr<FiberLighting> baked_lighting(const VertexTransmittance& transmittance, const IrradianceMaps& maps);
 
+/// Ad(x) D(t) and As(x, theta') S(t, theta') from the same maps: two look-ups, with the transmittance inside the
+/// integral.
+std::unique_ptr<FiberLighting> effective_lighting(const EffectiveTransmittance& transmittance,
+                                                  const IrradianceMaps& maps);
+
 /// A(x) without light: for pictures of the transmittance and of the tangents.
 std::unique_ptr<FiberLighting> average_lighting(const VertexTransmittance& transmittance);
 

@@ -1,4 +1,4 @@
-// The modes with the average transmittance A alone: from the maps, from the lights, and without light.
+// The modes that look the transmittance up: from the maps, from the lights, and without light.
 #include "core/irradiance/lookup.h"
 #include "core/render/fiber_lighting.h"
 
@@ -24,6 +24,32 @@ public:
 
 private:
     const VertexTransmittance& transmittance_;
+    const IrradianceMaps& maps_;
+};
+
+class EffectiveLighting : public FiberLighting {
+public:
+    EffectiveLighting(const EffectiveTransmittance& transmittance, const IrradianceMaps& maps)
+        : transmittance_(transmittance), maps_(maps) {}
+
+    void light(std::span<const StrandPoint> points, std::span<FiberLight> result,
+               const Progress& progress) const override {
+        progress.check();
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const FiberView& view = points[i].view;
+            const Vec3d diffuse = transmittance_.diffuse_at(points[i].place),
+                        light = look_up_diffuse(maps_, view.tangent);
+            const double specular = transmittance_.specular_at(points[i].place, dot(view.tangent, view.to_eye));
+            const Vec3d arriving{light.x * diffuse.x, light.y * diffuse.y, light.z * diffuse.z};
+            const double all = light.x + light.y + light.z;
+            result[i] = {all > 0 ? (arriving.x + arriving.y + arriving.z) / all : 0, {}};
+            result[i].lobes[diffuse_lobe] = arriving;
+            result[i].lobes[specular_lobe] = look_up_specular(maps_, view.tangent, view.to_eye) * specular;
+        }
+    }
+
+private:
+    const EffectiveTransmittance& transmittance_;
     const IrradianceMaps& maps_;
 };
 
@@ -65,6 +91,11 @@ private:
 
 std::unique_ptr<FiberLighting> baked_lighting(const VertexTransmittance& transmittance, const IrradianceMaps& maps) {
     return std::make_unique<BakedLighting>(transmittance, maps);
+}
+
+std::unique_ptr<FiberLighting> effective_lighting(const EffectiveTransmittance& transmittance,
+                                                  const IrradianceMaps& maps) {
+    return std::make_unique<EffectiveLighting>(transmittance, maps);
 }
 
 std::unique_ptr<FiberLighting> average_lighting(const VertexTransmittance& transmittance) {

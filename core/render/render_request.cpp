@@ -33,7 +33,7 @@ bool shows_light(const RenderRequest& request) {
 
 bool needs_environment(const RenderRequest& request) {
     const bool around = request.frame.channel == Channel::beauty && (request.background || request.mesh);
-    return request.mode != ShadingMode::baked || around;
+    return !uses_maps(request.mode) || around;
 }
 
 }  // namespace hairbake

@@ -12,18 +12,18 @@
 
 namespace hairbake {
 
-/// The way to find the light on a strand (fiber_lighting.h). Each mode after the first leaves out one approximation.
+/// The way to find the light on a strand (fiber_lighting.h).
 enum class ShadingMode {
     baked,        ///< A(x) (Kd D(t) + Ks S(t, theta')) from the maps, as at run time
     brute,        ///< A(x) times the sum over every light of the environment: no maps
     reference,    ///< the sum over every light with the traced transmittance inside: no decoupling
     directional,  ///< the sum over every light with the baked directional transmittance inside
+    effective,    ///< Kd Ad(x) D(t) + Ks As(x, theta') S(t, theta') from the maps, as at run time
 };
 inline constexpr std::array shading_mode_names{
-    EnumName{ShadingMode::baked, "baked"},
-    EnumName{ShadingMode::brute, "brute"},
-    EnumName{ShadingMode::reference, "reference"},
-    EnumName{ShadingMode::directional, "directional"},
+    EnumName{ShadingMode::baked, "baked"},         EnumName{ShadingMode::brute, "brute"},
+    EnumName{ShadingMode::reference, "reference"}, EnumName{ShadingMode::directional, "directional"},
+    EnumName{ShadingMode::effective, "effective"},
 };
 constexpr std::string_view name_of(ShadingMode mode) { return name_in(shading_mode_names, mode); }
 
@@ -64,6 +64,9 @@ struct RenderRequest {
 
 /// Throws Error(usage) naming the first field of the picture that is out of range; `bake` is not looked at.
 void validate(const RenderRequest& request);
+
+/// Whether the mode looks the light up in irradiance maps.
+constexpr bool uses_maps(ShadingMode mode) { return mode == ShadingMode::baked || mode == ShadingMode::effective; }
 
 /// Whether the picture needs light on the hair: the mode baked shows transmittance and tangents without any.
 bool shows_light(const RenderRequest& request);

@@ -27,6 +27,20 @@ struct DirectionalTransmittance {
     std::span<const float> bent_cone;  ///< [V * 4], axis and half-angle (Transmittance::bent_cone)
 };
 
+/// Baked effective transmittance (irradiance/effective_table.h), linear between the vertices.
+struct EffectiveTransmittance {
+    std::span<const float> values;  ///< [V * (diffuse + cosines)]
+    std::size_t diffuse = 3, cosines = 3;
+
+    /// Ad of each channel.
+    Vec3d diffuse_at(const StrandPlace& place) const;
+    /// As, clamped to [0, 1]. cosine: of theta', the angle between tangent and eye.
+    double specular_at(const StrandPlace& place, double cosine) const;
+
+private:
+    double at(const StrandPlace& place, std::size_t component) const;
+};
+
 /// T over directions as a bent cone: A / share inside the cone and 0 outside, so that the mean over the sphere is A.
 /// `share` = (1 - cos(half-angle)) / 2 is the cone's part of the sphere. The border is a linear ramp in the cosine,
 /// which keeps the mean. Where A > share, T inside is 1 and the mean is less than A.

@@ -37,8 +37,12 @@ constexpr std::array conditions{
     Condition{"irradiance.clamp_negative", is_sh, "irradiance.method is exact, which makes no negative texels"},
 };
 
-/// The first input of a stage, without which it does not run.
-std::string missing_input(const Stage& stage) { return std::string(stage.inputs.front()); }
+/// Why the stage does not run.
+std::string why_not(const Stage& stage, const BakeRequest& request) {
+    if (!request.hair && stage.inputs.front() == "hair") return "there is no hair";
+    if (!request.environment && stage.inputs.front() == "environment") return "there is no environment";
+    return std::string(stage.name) + ".enabled is false";
+}
 
 bool writes(const Stage& stage, const std::string& format) {
     const std::vector<std::string>& formats = formats_of(stage);
@@ -54,8 +58,9 @@ std::string why_unused(const BakeRequest& request, const std::string& given) {
     for (const Stage& stage : stages())
         if (reads_field(stage, field->path)) readers.push_back(&stage);
     const auto runs = [&](const Stage* stage) { return stage->asked_for(request); };
+    if (field->path == "effective_transmittance.enabled") return {};  // it says itself whether it is used
     if (!readers.empty() && std::none_of(readers.begin(), readers.end(), runs))
-        return "there is no " + missing_input(*readers[0]) + ", and so no stage " + std::string(readers[0]->name);
+        return why_not(*readers[0], request) + ", and so there is no stage " + std::string(readers[0]->name);
     for (const Condition& condition : conditions)
         if (is_or_lies_in(field->path, condition.path) && !condition.is_used(request))
             return std::string(condition.reason);
@@ -71,10 +76,11 @@ std::vector<std::string> request_warnings(const BakeRequest& request) {
     for (const std::string& format : request.outputs) {
         if (std::any_of(running.begin(), running.end(), [&](const Stage* stage) { return writes(*stage, format); }))
             continue;
-        for (const Stage& stage : stages())
-            if (writes(stage, format))
-                warnings.push_back("no file of the output " + format + " is written: it is of the stage " +
-                                   std::string(stage.name) + ", and there is no " + missing_input(stage));
+        const auto writer =
+            std::find_if(stages().begin(), stages().end(), [&](const Stage& stage) { return writes(stage, format); });
+        if (writer != stages().end())
+            warnings.push_back("no file of the output " + format + " is written: it is of the stage " +
+                               std::string(writer->name) + ", and " + why_not(*writer, request));
     }
     return warnings;
 }
