@@ -128,7 +128,7 @@ void add_scene_options(CLI::App& command, RenderOptions& options) {
 void add_shading_options(CLI::App& command, RenderOptions& options) {
     RenderRequest& request = options.request;
     command
-        .add_option("--mode", request.mode, "baked (the maps), brute (every light), reference (traced), directional")
+        .add_option("--mode", request.mode, "baked (the maps), brute (every light), reference (traced), directional, effective")
         ->transform(name_in_table(shading_mode_names))
         ->type_name("MODE")
         ->default_str(std::string(name_of(request.mode)));
