@@ -1,4 +1,4 @@
-// Effective transmittance: the weights that put the light inside the integral (docs/math.md, section 20).
+// Effective transmittance: the weights that put the light inside the integral (docs/math.md, section 19).
 //
 // With the published run time A(x) R(t), the transmittance is taken out of the integral. Effective transmittance keeps
 // it in: for each vertex there is an Ad with Ad D = sum of T L K_diffuse, exactly, and a series As(theta') = sum of c_j
