@@ -32,6 +32,7 @@
 #include "server/jobs/service.h"
 #include "server/settings.h"
 #include "server/store/database.h"
+#include "server/store/file_system.h"
 #include "server/store/store_folder.h"
 #include "server/store/store_identity.h"
 
@@ -134,7 +135,7 @@ auto opening(const Settings& settings, const Open& open) {
         if (error.kind() == ErrorKind::out_of_resources) throw Error(error.kind(), failed + error.what());
         throw;
     } catch (const std::filesystem::filesystem_error& error) {
-        throw stop(error.what(), check + advice_for_broken_database);
+        throw Error(ErrorKind::bad_input, failed + error_text(error));
     } catch (const std::logic_error& error) {  // a row holds another value than it may
         throw stop(error.what(), check + advice_for_broken_database);
     }
@@ -229,7 +230,13 @@ int serve(const Settings& settings) {
     BodyPlaces places(settings.bodies, settings.bodies_per_address);
     const Router router(all_routes(service, bodies, access, metrics), access, places);
     HttpServer http_server(
-        {settings.socket, settings.address, settings.port, settings.threads, settings.waiting, settings.accel},
+        {settings.socket,
+         settings.address,
+         settings.port,
+         settings.threads,
+         settings.waiting,
+         settings.accel,
+         {settings.body_rate, std::chrono::milliseconds(static_cast<std::int64_t>(settings.body_window_s * 1000))}},
         [&](HttpRequest& request) { return answer(router, metrics, request); });
     std::atomic<bool> stopping = false;
     std::jthread serving([&] {
@@ -280,7 +287,7 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "hairbaked: %s\n", error.what());
         return error.kind() == ErrorKind::usage ? 2 : error.kind() == ErrorKind::bad_input ? 3 : 1;
     } catch (const std::exception& error) {
-        std::fprintf(stderr, "hairbaked: %s\n", error.what());
+        std::fprintf(stderr, "hairbaked: %s\n", error_text(error).c_str());
         return 1;
     }
 }

@@ -118,6 +118,8 @@ void read_listen(Block& block, Settings& settings, const fs::path& base) {
     block.number("threads", settings.threads, 1, 1024);
     block.number("bodies", settings.bodies, 1, 1024);
     block.number("bodies_per_address", settings.bodies_per_address, 1, 1024);
+    block.number("body_rate", settings.body_rate, 0, 1'000'000'000);
+    block.number("body_window_s", settings.body_window_s, 1, 3600);
     block.number("waiting", settings.waiting, 1, 65536);
     block.text("accel", settings.accel);
 }

@@ -28,6 +28,8 @@ struct Settings {
     int threads = 64;                   ///< requests at once
     int bodies = 48;                    ///< uploads and long JSON bodies at once; then 429
     int bodies_per_address = 16;        ///< of those, from one address that nginx names
+    std::uint64_t body_rate = 1024;     ///< bytes a second that a body must bring; 0: any; then 408
+    double body_window_s = 30;          ///< over which that is averaged
     int waiting = 256;                  ///< connections that may wait for a thread; then 503
     std::string accel;  ///< nginx's internal location of store/blobs, from which nginx sends files; or empty
     // [store]

@@ -30,7 +30,8 @@ std::optional<BodyPlaces::Place> BodyPlaces::take(const std::string& address) {
     if (taken_ == places_) return std::nullopt;
     if (!client.empty()) {
         const auto found = taken_by_.find(client);
-        if (found != taken_by_.end() && found->second == per_address_) return std::nullopt;
+        const int own = found == taken_by_.end() ? 0 : found->second;
+        if (own >= per_address_ || own >= places_ - taken_) return std::nullopt;
         ++taken_by_[client];
     }
     ++taken_;
@@ -45,6 +46,10 @@ std::string BodyPlaces::refusal(const std::string& address) {
     if (own >= per_address_)
         return std::to_string(own) + bodies + " from your address; allowed are up to " + std::to_string(per_address_) +
                " at once ([listen] bodies_per_address)";
+    if (const int left = places_ - taken_; left > 0)
+        return std::to_string(own) + bodies + " from your address, and " + std::to_string(left) + " of " +
+               std::to_string(places_) +
+               " places are free; an address may take one more only while more are free than it has ([listen] bodies)";
     return std::to_string(taken_) + bodies + "; allowed are up to " + std::to_string(places_) +
            " at once ([listen] bodies)";
 }

@@ -34,6 +34,9 @@ public:
 
     /// `address` is an IP address as text, or empty. Of an IPv6 address the first 64 bits count: a client has all
     /// others. Nothing when all places, or all of this address, are taken.
+    ///
+    /// An address gets another place only while more are free than it has. So the last places are kept for addresses
+    /// that have none: of 48 places with 16 for an address, three addresses can take 40, and five 46.
     std::optional<Place> take(const std::string& address);
 
     /// Why take() gave nothing: how many places are taken, how many are allowed, by which setting.

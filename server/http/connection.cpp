@@ -10,7 +10,6 @@
 namespace hairbake {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 constexpr std::size_t most_held = 16384;
 constexpr milliseconds glance(10);  // how often `still_wanted` is asked
@@ -28,7 +27,8 @@ ssize_t uninterrupted(Call call) {
 
 }  // namespace
 
-Connection::Connection(int socket, const Patience& patience) : socket_(socket), patience_(patience) {}
+Connection::Connection(int socket, const Patience& patience)
+    : socket_(socket), patience_(patience), head_end_(Clock::now() + patience.head) {}
 
 Connection::~Connection() {
     if (socket_ >= 0) ::close(socket_);
@@ -57,13 +57,21 @@ ssize_t Connection::send(const char* data, std::size_t size) const {
     return uninterrupted([&] { return ::send(socket_, data, size, MSG_DONTWAIT | MSG_NOSIGNAL); });
 }
 
-bool Connection::await_request(const std::function<bool()>& still_wanted) {
-    const auto end = Clock::now() + patience_.first_byte;
+bool Connection::await_head(const std::function<bool()>& still_wanted) { return fill(still_wanted, head_end_); }
+
+bool Connection::await_more(const std::function<bool()>& still_wanted) {
+    return fill(still_wanted, Clock::now() + patience_.read);
+}
+
+/// Fills the read buffer if it is empty.
+bool Connection::fill(const std::function<bool()>& still_wanted, Clock::time_point end) {
+    if (has_unread()) return true;
     ssize_t count = receive(ahead_.data(), ahead_.size());  // usually the request is there already
     while (count < 0 && must_wait() && still_wanted() && Clock::now() < end) {
         await(POLLIN, glance);
         count = receive(ahead_.data(), ahead_.size());
     }
+    ahead_begin_ = 0;
     ahead_end_ = static_cast<std::size_t>(std::max<ssize_t>(count, 0));
     return count > 0;
 }

@@ -17,7 +17,7 @@ namespace hairbake {
 class Connection {
 public:
     struct Patience {
-        std::chrono::milliseconds first_byte, read, write;  ///< how long to wait for the client
+        std::chrono::milliseconds head, read, write;  ///< how long to wait for the client; `head`: for a whole one
     };
 
     Connection(int socket, const Patience& patience);
@@ -26,8 +26,11 @@ public:
     Connection& operator=(const Connection&) = delete;
 
     int socket() const { return socket_; }
-    /// Waits for the first bytes. Returns false when the patience ends or soon after `still_wanted` returns false.
-    bool await_request(const std::function<bool()>& still_wanted);
+    /// Waits for bytes of the request's head, unless some are unread. Returns false when the client has closed, when
+    /// the patience for the whole head has ended since the construction, or soon after `still_wanted` returns false.
+    bool await_head(const std::function<bool()>& still_wanted);
+    /// The same for bytes that come later, with the patience for a read.
+    bool await_more(const std::function<bool()>& still_wanted);
     /// Returns the number of bytes read, 1 to `size`; 0 when the client has closed; -1 after an error or a timeout.
     ssize_t read(char* data, std::size_t size);
     /// Returns `size`, or -1 when buffered bytes cannot be sent.
@@ -43,13 +46,16 @@ public:
     int release() { return std::exchange(socket_, -1); }
 
 private:
+    using Clock = std::chrono::steady_clock;
     bool await(short event, std::chrono::milliseconds patience) const;
+    bool fill(const std::function<bool()>& still_wanted, Clock::time_point end);
     ssize_t receive(char* data, std::size_t size) const;
     ssize_t send(const char* data, std::size_t size) const;
     bool send_all(const char* data, std::size_t size) const;
 
     int socket_;
     const Patience patience_;
+    const Clock::time_point head_end_;
     std::array<char, 4096> ahead_;                 ///< read buffer
     std::size_t ahead_begin_ = 0, ahead_end_ = 0;  ///< the unread bytes in it
     std::string held_;                             ///< write buffer

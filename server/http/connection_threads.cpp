@@ -25,7 +25,7 @@ bool is_nothing(int error) { return error == EINTR || error == EAGAIN || error =
 
 }  // namespace
 
-ConnectionThreads::ConnectionThreads(int listening, int threads, int waiting, Handler serve, Handler refuse)
+ConnectionThreads::ConnectionThreads(int listening, int threads, int waiting, Server serve, Handler refuse)
     : listening_(listening),
       threads_(static_cast<std::size_t>(threads)),
       most_waiting_(static_cast<std::size_t>(waiting)),
@@ -64,7 +64,7 @@ void ConnectionThreads::work() {
         int socket = accept();
         switch (place(socket)) {
             case Place::with_thread:
-                for (; socket >= 0; socket = next_waiting()) serve_(socket);
+                for (; socket >= 0; socket = next_waiting()) serve_(socket, *this);
                 break;
             case Place::at_door:
                 refuse_(socket);
@@ -118,6 +118,7 @@ ConnectionThreads::Place ConnectionThreads::place(int accepted) {
     if (serving_ == threads_) {
         if (waiting_.size() == most_waiting_) return Place::at_door;
         waiting_.push_back(accepted);
+        others_wait_ = true;
         return Place::elsewhere;
     }
     ++serving_;
@@ -137,6 +138,7 @@ int ConnectionThreads::next_waiting() {
     }
     const int socket = waiting_.front();
     waiting_.erase(waiting_.begin());
+    others_wait_ = !waiting_.empty();
     return socket;
 }
 

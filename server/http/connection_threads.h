@@ -1,6 +1,7 @@
 // The threads that accept and serve connections: a fixed number, and a bounded queue.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <functional>
@@ -18,6 +19,8 @@ class ConnectionThreads {
 public:
     /// Takes over an accepted connection's socket. Must not throw.
     using Handler = std::function<void(int socket)>;
+    /// The same, and may ask `threads` whether others wait.
+    using Server = std::function<void(int socket, const ConnectionThreads& threads)>;
 
     /// Starts all threads, which accept from now on. `listening` is a socket that outlives this object.
     /// `threads` >= 1 connections are served at once.
@@ -25,7 +28,7 @@ public:
     /// `serve` and `refuse` handle a connection; one thread at a time calls `refuse`.
     /// Throws std::system_error when the system gives no more threads; a connection that was accepted meanwhile is
     /// served.
-    ConnectionThreads(int listening, int threads, int waiting, Handler serve, Handler refuse);
+    ConnectionThreads(int listening, int threads, int waiting, Server serve, Handler refuse);
 
     /// Stops, and waits as join() does.
     ~ConnectionThreads();
@@ -37,6 +40,8 @@ public:
     void join();
     /// Thread-safe.
     void stop();
+    /// Whether a connection waits because all threads serve. Thread-safe, and takes no lock.
+    bool others_wait() const { return others_wait_; }
 
 private:
     enum class Place { with_thread, at_door, elsewhere };
@@ -50,8 +55,10 @@ private:
 
     const int listening_;
     const std::size_t threads_, most_waiting_;
-    const Handler serve_, refuse_;
-    std::mutex mutex_;  ///< guards the members below
+    const Server serve_;
+    const Handler refuse_;
+    std::atomic<bool> others_wait_ = false;  ///< whether waiting_ has some
+    std::mutex mutex_;                       ///< guards the members below
     bool ending_ = false;
     std::chrono::steady_clock::time_point silent_until_{};
     std::size_t accepting_ = 0, serving_ = 0;     ///< threads

@@ -29,36 +29,51 @@ namespace hairbake {
 namespace {
 
 using namespace std::chrono_literals;
-constexpr Connection::Patience patience{.first_byte = 10s, .read = 30s, .write = 60s};
+constexpr Connection::Patience patience{.head = 10s, .read = 30s, .write = 60s};
+/// So long a client may keep a thread waiting for its head, or for its short body, while others wait for a thread.
+constexpr std::chrono::milliseconds grace = 1s;
 constexpr std::chrono::milliseconds lingering = 1s;
 constexpr std::size_t most_lingering = 1000;  // connections
 /// A body of up to this size is in nginx's first read (proxy_buffer_size), so nginx need not buffer it.
 constexpr std::size_t one_read = 6144;
+/// A body of up to this size takes no place (router.cpp).
+constexpr std::uint64_t short_body = 64 << 10;
 constexpr std::size_t longest_head = 64 << 10;  // as in nginx.conf
 const std::string any_path = "/";               // every request gets this path in the library; the routing is ours
 
 /// Whether the current connection's request was not read to its end.
 thread_local bool body_left = false;
+/// Why the current connection's client was given up; empty while it is not.
+thread_local std::string given_up;
 
 /// Adapts a connection to the library.
 class ConnectionStream : public httplib::Stream {
 public:
-    explicit ConnectionStream(Connection& connection) : connection_(connection) {}
+    /// `keeps_thread` tells whether the client may still let this thread wait for a head or a short body.
+    ConnectionStream(Connection& connection, const BodyPace::Limits& pace, std::function<bool()> keeps_thread)
+        : connection_(connection), limits_(pace), pace_(pace), keeps_thread_(std::move(keeps_thread)) {}
 
     bool is_readable() const override { return connection_.await_readable(); }
     bool is_writable() const override { return connection_.await_writable(); }
     ssize_t read(char* data, std::size_t size) override {
-        if (in_head_ && ++head_bytes_ > longest_head) return -1;  // the library reads a head byte by byte
-        if (!in_head_ && std::exchange(client_waits_, false) && !send_continue()) return -1;
-        return connection_.read(data, size);
+        if (!given_up.empty()) return -1;
+        if (in_head_) return read_head(data, size);
+        if (std::exchange(client_waits_, false) && !send_continue()) return -1;
+        return connection_.has_unread() ? connection_.read(data, size) : read_body(data, size);
     }
     /// `client_waits`: it sends its body only after a reply "100 Continue". The reply goes out when the body is read
     /// for the first time, so a request that is refused by its head gets its refusal alone.
-    void end_head(bool client_waits) {
+    /// `is_short`: a body that has no place, so it must not keep a thread from others.
+    void end_head(bool client_waits, bool is_short) {
         in_head_ = false;
         client_waits_ = client_waits;
+        is_short_ = is_short;
     }
-    ssize_t write(const char* data, std::size_t size) override { return connection_.write(data, size); }
+    bool in_head() const { return in_head_; }
+    /// What the library answers to a head that was given up is left out.
+    ssize_t write(const char* data, std::size_t size) override {
+        return in_head_ && !given_up.empty() ? static_cast<ssize_t>(size) : connection_.write(data, size);
+    }
     void get_remote_ip_and_port(std::string&, int&) const override {}  // not used
     void get_local_ip_and_port(std::string&, int&) const override {}
     socket_t socket() const override { return connection_.socket(); }
@@ -69,8 +84,37 @@ private:
         return connection_.has_unread() || (connection_.write(reply.data(), reply.size()) >= 0 && connection_.flush());
     }
 
+    ssize_t read_head(char* data, std::size_t size) {
+        if (++head_bytes_ > longest_head) return -1;  // the library reads a head byte by byte
+        if (connection_.await_head(keeps_thread_)) return connection_.read(data, size);
+        given_up = "the head of the request did not arrive within " +
+                   std::to_string(std::chrono::duration_cast<std::chrono::seconds>(patience.head).count()) +
+                   " s, or not at once while other connections waited: send it again, whole";
+        return -1;
+    }
+
+    ssize_t read_body(char* data, std::size_t size) {
+        const auto begin = std::chrono::steady_clock::now();
+        if (is_short_ && !connection_.await_more(keeps_thread_)) {
+            given_up = "the body did not arrive at once while other connections waited: send it again, whole";
+            return -1;
+        }
+        const ssize_t count = connection_.read(data, size);
+        if (count <= 0 || pace_.add(static_cast<std::uint64_t>(count), std::chrono::steady_clock::now() - begin))
+            return count;
+        given_up = "the body brought fewer than " + std::to_string(limits_.bytes_per_second) +
+                   " bytes a second, as the mean of " +
+                   std::to_string(std::chrono::duration_cast<std::chrono::seconds>(limits_.window).count()) +
+                   " s ([listen] body_rate, body_window_s): send it over a faster connection, or as a resumable upload "
+                   "(/v1/uploads), which keeps what arrived";
+        return -1;
+    }
+
     Connection& connection_;
-    bool in_head_ = true, client_waits_ = false;
+    const BodyPace::Limits limits_;
+    BodyPace pace_;
+    const std::function<bool()> keeps_thread_;
+    bool in_head_ = true, client_waits_ = false, is_short_ = false;
     std::size_t head_bytes_ = 0;
 };
 
@@ -83,17 +127,23 @@ void or_drop(const std::function<void()>& answer) {
     }
 }
 
+/// Buffers a reply whose head the library does not make.
+void write_reply(Connection& connection, const std::string& status, const HttpReply& reply) {
+    std::string text = "HTTP/1.1 " + status + "\r\nContent-Type: " + reply.type +
+                       "\r\nContent-Length: " + std::to_string(reply.body.size());
+    for (const auto& [name, value] : reply.headers) text += "\r\n" + name + ": " + value;
+    text += "\r\nConnection: close\r\n\r\n" + reply.body;
+    connection.write(text.data(), text.size());
+}
+
 /// Never waits for the client: one thread refuses all connections.
 void refuse_connection(int accepted, const HttpServerSettings& settings, Lingering& lingering) {
-    Connection connection(accepted, {.first_byte = 0s, .read = 0s, .write = 0s});
+    Connection connection(accepted, {.head = 0s, .read = 0s, .write = 0s});
     HttpReply busy = problem(503, "busy",
                              std::to_string(settings.threads) + " requests are being answered and " +
                                  std::to_string(settings.waiting) +
                                  " wait; allowed are no more ([listen] threads, waiting): try again in 2 s");
-    const std::string text = "HTTP/1.1 503 Service Unavailable\r\nContent-Type: " + busy.type +
-                             "\r\nContent-Length: " + std::to_string(busy.body.size()) +
-                             "\r\nRetry-After: 2\r\nConnection: close\r\n\r\n" + busy.body;
-    connection.write(text.data(), text.size());
+    write_reply(connection, "503 Service Unavailable", busy.with("Retry-After", "2"));
     connection.flush();
     lingering.add(connection.release());
 }
@@ -106,6 +156,15 @@ bool awaits_continue(const httplib::Request& request) {
 }
 
 bool is_chunked(const httplib::Request& request) { return request.has_header("Transfer-Encoding"); }
+
+/// Whether nginx did not forward the request. What nginx forwards comes whole, or has a place, or is an upload.
+bool is_local(const httplib::Request& request) {
+    return !request.has_header("X-Forwarded-For") && !request.has_header("Forwarded");
+}
+
+bool is_short(const httplib::Request& request) {
+    return !is_chunked(request) && read_length(request.get_header_value("Content-Length")).value_or(0) <= short_body;
+}
 
 /// The reply to a request with a malformed head. Nothing when the head is well-formed.
 std::optional<HttpReply> wrong_head(const httplib::Request& request, const std::optional<Target>& target) {
@@ -146,6 +205,7 @@ void read_body(const httplib::ContentReader& reader, const std::function<void(st
         }
     });
     if (failure) std::rethrow_exception(failure);
+    if (!given_up.empty()) throw Refusal(Refused::too_slow, given_up);
     if (!whole) throw Refusal(Refused::malformed, "the body ended early or its chunks are malformed");
     body_left = false;
 }
@@ -227,13 +287,19 @@ void remove_dead_socket(const std::string& path) {
 class HttpServer::Listener : public httplib::Server {
 public:
     Listener(const HttpServerSettings& settings, HttpServer::Handler handler)
-        : handler_(std::move(handler)), accel_(settings.accel), address_(bind(settings)), listening_(svr_sock_.load()) {
+        : handler_(std::move(handler)),
+          accel_(settings.accel),
+          pace_(settings.pace),
+          address_(bind(settings)),
+          listening_(svr_sock_.load()) {
         set_payload_max_length(std::numeric_limits<std::size_t>::max());  // the router limits bodies
         handle_requests();
         handle_failures();
         threads_.emplace(
             listening_.get(), settings.threads, settings.waiting,
-            [this](int accepted) { or_drop([&] { serve_connection(accepted); }); },
+            [this](int accepted, const ConnectionThreads& threads) {
+                or_drop([&] { serve_connection(accepted, threads); });
+            },
             [this, settings](int accepted) { or_drop([&] { refuse_connection(accepted, settings, lingering_); }); });
     }
 
@@ -328,28 +394,37 @@ private:
         fill(to, std::move(reply));
     }
 
-    void serve_connection(int accepted) {
+    void serve_connection(int accepted, const ConnectionThreads& threads) {
         Connection connection(accepted, patience);
-        if (!connection.await_request([this] { return svr_sock_ != INVALID_SOCKET; })) return;
+        const auto begin = std::chrono::steady_clock::now();
+        const auto keeps_thread = [&, this] {
+            if (svr_sock_ == INVALID_SOCKET) return false;
+            return !threads.others_wait() || std::chrono::steady_clock::now() - begin < grace;
+        };
+        if (!connection.await_head(keeps_thread)) return;
         body_left = true;  // until the head is parsed
-        serve_request(connection);
+        given_up.clear();
+        serve_request(connection, keeps_thread);
         connection.flush();
         if (body_left) lingering_.add(connection.release());
     }
 
-    void serve_request(Connection& connection) {
-        ConnectionStream stream(connection);
+    void serve_request(Connection& connection, const std::function<bool()>& keeps_thread) {
+        ConnectionStream stream(connection, pace_, keeps_thread);
         bool closed = false;
         process_request(stream, "", 0, "", 0, true, closed, [&stream](httplib::Request& request) {
-            stream.end_head(awaits_continue(request));
+            stream.end_head(awaits_continue(request), is_local(request) && is_short(request));
             request.headers.erase("Expect");  // the library would reply before the request is checked
             request.path = any_path;          // the real path is in the target
             request.ranges.clear();           // we parse Range ourselves
         });
+        if (stream.in_head() && !given_up.empty())
+            write_reply(connection, "408 Request Timeout", problem(408, "too-slow", given_up));
     }
 
     HttpServer::Handler handler_;
     const std::string accel_;
+    const BodyPace::Limits pace_;
     const std::string address_;
     const Descriptor listening_;
     Lingering lingering_{lingering, most_lingering};

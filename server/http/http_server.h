@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "server/http/body_pace.h"
 #include "server/http/message.h"
 
 namespace hairbake {
@@ -14,7 +15,8 @@ struct HttpServerSettings {
     std::string address;
     int port = 0;  ///< 0: any free port
     int threads = 64, waiting = 256;
-    std::string accel;  ///< nginx's location of the store's blobs; empty: the daemon sends them itself
+    std::string accel;        ///< nginx's location of the store's blobs; empty: the daemon sends them itself
+    BodyPace::Limits pace{};  ///< of bodies
 };
 
 /// Answers one request a connection. Malformed requests (framing, paths, control characters, encodings) get

@@ -37,6 +37,8 @@ const char* title_of(int status) {
             return "Address too long";
         case 415:
             return "Unsupported media type";
+        case 408:
+            return "Too slow";
         case 416:
             return "Range not satisfiable";
         case 422:
@@ -76,6 +78,8 @@ HttpReply problem_of(const Refusal& refusal) {
             return problem(413, "too-large", refusal.what(), refusal.field());
         case Refused::too_many:
             return problem(429, "too-many", refusal.what(), refusal.field()).with("Retry-After", "60");
+        case Refused::too_slow:
+            return problem(408, "too-slow", refusal.what(), refusal.field());
         case Refused::full:
             return problem(507, "full", refusal.what(), refusal.field());
         default:
@@ -118,7 +122,7 @@ HttpReply problem_of_current_exception() {
     } catch (const std::bad_alloc&) {
         return problem(503, "busy", "memory is short").with("Retry-After", "5");
     } catch (const std::exception& error) {
-        spdlog::error("a request failed: {}", error.what());
+        spdlog::error("a request failed: {}", error_text(error));
     } catch (...) {
         spdlog::error("a request failed for an unknown reason");
     }

@@ -7,6 +7,7 @@
 #include "server/jobs/uploads.h"
 #include "server/store/blob_store.h"
 #include "server/store/disk_reserve.h"
+#include "server/store/file_system.h"
 #include "server/store/pruning.h"
 #include "server/store/room.h"
 #include "server/store/store_identity.h"
@@ -51,7 +52,7 @@ void Maintenance::run() {
             reserve_.fill();
             identity_.advance_if_changed();
         } catch (const std::exception& error) {
-            spdlog::error("maintenance: {}", error.what());
+            spdlog::error("maintenance: {}", error_text(error));
         }
 }
 

@@ -47,8 +47,9 @@ std::optional<ClaimedStage> Queue::claim() {
 
 /// claim_queued(). A database that cannot be written pauses the queue.
 std::optional<ClaimedStage> Queue::try_to_claim() try { return claim_queued(); } catch (const std::exception& error) {
-    spdlog::error("no stage can be taken from the queue: {}", error.what());
-    pause("", error.what());
+    const std::string reason = error_text(error);
+    spdlog::error("no stage can be taken from the queue: {}", reason);
+    pause("", reason);
     return std::nullopt;
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/store/file_system.h"
 #include "server/store/refusal.h"
 
 namespace hairbake {
@@ -47,7 +48,7 @@ void Scrub::run() {
         } catch (const Stopped&) {
             return;
         } catch (const std::exception& error) {
-            spdlog::error("the check of stored bytes: {}", error.what());
+            spdlog::error("the check of stored bytes: {}", error_text(error));
         }
 }
 

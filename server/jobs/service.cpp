@@ -17,6 +17,7 @@
 #include "server/jobs/worker_pool.h"
 #include "server/store/database.h"
 #include "server/store/disk_reserve.h"
+#include "server/store/file_system.h"
 #include "server/store/room.h"
 #include "server/store/store_folder.h"
 #include "server/store/store_identity.h"
@@ -47,7 +48,7 @@ struct Service::Parts {
           identity(folder.path(), database, settings.store_id),
           store(settings.store, database),
           reserve(settings.store, database),
-          room(database, store, settings.store, {settings.budget_bytes, settings.keep_free_bytes}),
+          room(database, store, reserve, settings.store, {settings.budget_bytes, settings.keep_free_bytes}),
           runner(std::move(with)),
           inspector(make_runner(local_runner_name, runner_settings(settings))),
           queue(database, store, settings.max_crashes),
@@ -55,7 +56,7 @@ struct Service::Parts {
           batches(database, queue),
           catalog(database, store, *inspector),
           names(database),
-          uploads(database, store, room, settings.store / "uploads",
+          uploads(database, store, room, reserve, settings.store / "uploads",
                   {settings.upload_lifetime_s, settings.blob_bytes, settings.budget_bytes, settings.open_uploads}) {}
 
     /// The workers of an earlier daemon that still run, as far as their work folders are there.
@@ -63,7 +64,7 @@ struct Service::Parts {
         if (!runner->survives_restart()) return {};
         std::vector<StartedTask> tasks = queue.started_tasks(settings.runner);
         std::erase_if(tasks, [&](const StartedTask& task) {
-            return !std::filesystem::exists(store.incoming_folder() / task.folder);
+            return kind_of_path(store.incoming_folder() / task.folder) == PathKind::nothing;
         });
         return tasks;
     }
@@ -140,7 +141,7 @@ Service::~Service() {
         parts_->store.flush_uses();
         parts_->identity.advance();  // a copy of the database that was made before is now an old one
     } catch (const std::exception& error) {
-        spdlog::error("at the end: {}", error.what());
+        spdlog::error("at the end: {}", error_text(error));
     }
 }
 
@@ -196,9 +197,7 @@ void Service::remove_blob(const std::string& digest, bool force) {
     parts_->reserve.run([&] { hairbake::remove_blob(parts_->store, digest, force); });
 }
 
-void Service::remove_upload(const std::string& id) {
-    parts_->reserve.run([&] { parts_->uploads.remove(id); });
-}
+void Service::remove_upload(const std::string& id) { parts_->uploads.remove(id); }
 
 Catalog::Added Service::add_input(const std::string& kind, const std::string& digest) {
     try {
@@ -241,13 +240,14 @@ std::string Service::not_ready() {
         return "the queue is paused and tries again by itself: " + reason;
     try {
         parts_->database.check_in_place();
+        parts_->folder.check_usable();
         IncomingFile probe(parts_->store.incoming_folder(), 16);
         probe.add(std::as_bytes(std::span("ready", 5)));
         parts_->database.read([](Sql& sql) { sql.rows("SELECT count(*) FROM names"); });
         parts_->runner->check_ready();
         parts_->inspector->check_ready();
     } catch (const std::exception& error) {
-        return error.what();
+        return error_text(error);
     }
     return {};
 }

@@ -57,7 +57,7 @@ public:
     /// As input_removal.h tells; `kind` is "model" or "environment".
     void remove_input(const std::string& kind, const std::string& digest, bool force);
     void remove_blob(const std::string& digest, bool force);
-    /// As Uploads::remove(), also on a full disk.
+    /// As Uploads::remove().
     void remove_upload(const std::string& id);
 
     /// Catalog::add() of verified bytes. Throws as open_blob(), too.

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "server/store/file_system.h"
 
 namespace hairbake {
 namespace {
@@ -29,7 +30,7 @@ Outcome outcome_of_exception() {
         return outcome(of_input && error.system_error() == 0 ? End::failed : End::trouble, error.kind(), error.what(),
                        error.field());
     } catch (const std::exception& error) {
-        return outcome(End::trouble, ErrorKind::out_of_resources, error.what());
+        return outcome(End::trouble, ErrorKind::out_of_resources, error_text(error));
     }
 }
 

@@ -11,6 +11,7 @@
 #include "core/base/short_text.h"
 #include "server/store/blob_store.h"
 #include "server/store/database.h"
+#include "server/store/disk_reserve.h"
 #include "server/store/file_system.h"
 #include "server/store/refusal.h"
 #include "server/store/removal_log.h"
@@ -68,8 +69,9 @@ struct Uploads::Growth {
     Room::Share share;
 };
 
-Uploads::Uploads(Database& database, BlobStore& store, Room& room, fs::path folder, const Limits& limits)
-    : database_(database), store_(store), room_(room), folder_(std::move(folder)), limits_(limits) {
+Uploads::Uploads(Database& database, BlobStore& store, Room& room, DiskReserve& reserve, fs::path folder,
+                 const Limits& limits)
+    : database_(database), store_(store), room_(room), reserve_(reserve), folder_(std::move(folder)), limits_(limits) {
     make_folder(folder_);
 }
 
@@ -126,7 +128,8 @@ void Uploads::recover() {
     clear_unknown();
     database_.write([&](Sql& sql) {
         for (const SqlRow& row : sql.rows("SELECT id FROM uploads"))
-            if (!fs::exists(folder_ / row.text(0))) sql.run("DELETE FROM uploads WHERE id = ?", {row.text(0)});
+            if (kind_of_path(folder_ / row.text(0)) == PathKind::nothing)
+                sql.run("DELETE FROM uploads WHERE id = ?", {row.text(0)});
     });
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_))
         if (entry.is_regular_file()) room_.keep(entry.path().filename().string(), entry.file_size());
@@ -145,7 +148,7 @@ void Uploads::complete_whole_ones() {
     for (const std::string& id : whole) try {
             complete(id);
         } catch (const std::exception& error) {  // no room, or the digest is wrong: then the upload is gone
-            spdlog::warn("the whole upload {} did not become a blob: {}", id, error.what());
+            spdlog::warn("the whole upload {} did not become a blob: {}", id, error_text(error));
         }
 }
 
@@ -158,7 +161,7 @@ void Uploads::expire() {
     for (const std::string& id : old) try {
             remove(id, "the upload expired");
         } catch (const std::exception& error) {  // a request writes to it, or the disk is full
-            spdlog::warn("the expired upload {} stays: {}", id, error.what());
+            spdlog::warn("the expired upload {} stays: {}", id, error_text(error));
         }
 }
 
@@ -307,7 +310,12 @@ void Uploads::make_blob(const std::string& id, const std::string& digest) {
 
 /// Removes the upload's row and file. `reason` is for the log.
 void Uploads::forget(const std::string& id, std::string_view reason) {
-    database_.write([&](Sql& sql) { sql.run("DELETE FROM uploads WHERE id = ?", {id}); });
+    try {
+        database_.write([&](Sql& sql) { sql.run("DELETE FROM uploads WHERE id = ?", {id}); });
+    } catch (const Error& error) {
+        if (error.system_error() != ENOSPC) throw;
+        throw DeletionNeedsRoom(error, {folder_ / id});
+    }
     FileCount removed, moved;
     if (kind_of_path(folder_ / id) == PathKind::folder) store_.put_aside(folder_ / id, moved);
     remove_counted(folder_ / id, removed);
@@ -321,7 +329,7 @@ void Uploads::remove(const std::string& id, std::string_view reason) {
     database_.read([&](Sql& sql) {
         if (sql.rows("SELECT 1 FROM uploads WHERE id = ?", {id}).empty()) refuse_unknown(id);
     });
-    forget(id, reason);
+    reserve_.run([&] { forget(id, reason); });
 }
 
 }  // namespace hairbake

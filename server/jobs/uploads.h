@@ -16,6 +16,7 @@ namespace hairbake {
 
 class BlobStore;
 class Database;
+class DiskReserve;
 class Room;
 
 struct UploadState {
@@ -35,7 +36,8 @@ public:
         std::uint64_t budget = 0;      ///< what all unfinished uploads together may announce
         int most_open = 0;             ///< unfinished uploads of one token
     };
-    Uploads(Database& database, BlobStore& store, Room& room, std::filesystem::path folder, const Limits& limits);
+    Uploads(Database& database, BlobStore& store, Room& room, DiskReserve& reserve, std::filesystem::path folder,
+            const Limits& limits);
 
     /// At boot: moves files without a row to lost+found, and removes those that are empty or a second link to a blob's
     /// file; removes rows without a file; makes blobs of uploads that are whole.
@@ -74,6 +76,7 @@ public:
     /// `reason` is for the log.
     /// Throws Refusal(not_found) when there is no such upload.
     /// Throws Refusal(conflict) while a request writes to it.
+    /// Throws as DiskReserve::run().
     void remove(const std::string& id, std::string_view reason = "the upload was deleted on request");
 
 private:
@@ -95,6 +98,7 @@ private:
     Database& database_;
     BlobStore& store_;
     Room& room_;
+    DiskReserve& reserve_;
     std::filesystem::path folder_;
     const Limits limits_;
     std::mutex mutex_;

@@ -22,6 +22,7 @@
 #include "server/jobs/worker_trial.h"
 #include "server/store/blob_store.h"
 #include "server/store/database.h"
+#include "server/store/file_system.h"
 #include "server/store/room.h"
 
 namespace hairbake {
@@ -92,8 +93,9 @@ void WorkerPool::work() {
             remove_leftovers();
             room_.trim();
         } catch (const std::exception& error) {  // the database cannot be written
-            spdlog::error("a thread of the worker pool: {}", error.what());
-            queue_.pause("", error.what());
+            const std::string reason = error_text(error);
+            spdlog::error("a thread of the worker pool: {}", reason);
+            queue_.pause("", reason);
         }
 }
 
@@ -118,8 +120,9 @@ void WorkerPool::run_to_the_end(const ClaimedStage& stage) {
     for (;;) try {
             return record(stage, outcome);
         } catch (const std::exception& error) {
-            spdlog::error("the end of stage {} cannot be recorded: {}", stage.key.substr(0, 12), error.what());
-            queue_.pause("", error.what());
+            const std::string reason = error_text(error);
+            spdlog::error("the end of stage {} cannot be recorded: {}", stage.key.substr(0, 12), reason);
+            queue_.pause("", reason);
             if (queue_.stopping()) return;
             std::this_thread::sleep_for(retry_after);
         }
@@ -223,8 +226,11 @@ Outcome WorkerPool::run(const ClaimedStage& stage) {
     folder.reset();  // first: on a full disk the database may need its space
     std::vector<std::string> suspects = input_digests(stage);
     if (outcome.end == End::trouble)
-        std::erase_if(suspects, [&](const std::string& digest) { return fs::exists(store_.path_of(digest)); });
+        std::erase_if(suspects, [&](const std::string& digest) {
+            return kind_of_path(store_.path_of(digest)) != PathKind::nothing;  // also what cannot be looked at
+        });
     const bool of_input = outcome.end == End::failed && outcome.kind == ErrorKind::bad_input;
+    if (outcome.end == End::trouble) outcome.message += store_.advice_for_closed(input_digests(stage));
     if (of_input || outcome.end == End::trouble) remove_spoiled_inputs(suspects);
     return outcome;
 }

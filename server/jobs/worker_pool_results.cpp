@@ -20,6 +20,7 @@
 #include "server/store/file_system.h"
 #include "server/store/refusal.h"
 #include "server/store/room.h"
+#include "server/store/store_advice.h"
 
 namespace hairbake {
 namespace fs = std::filesystem;
@@ -45,8 +46,9 @@ bool has_its_digest(const fs::path& file, const std::string& digest) try {
     const PathKind kind = kind_of_path(file);
     return kind != PathKind::folder && kind != PathKind::other && digest_of_file(file) == digest;
 } catch (const Error& error) {
-    if (error.system_error() == ENOENT && fs::is_directory(file.parent_path())) return false;
-    throw;
+    if (error.system_error() == ENOENT && kind_of_path(file.parent_path()) == PathKind::folder) return false;
+    throw Error(error.kind(), error.what() + (". " + advice_for(file, error.system_error())), error.field(),
+                error.system_error());
 }
 
 bool is_link(const fs::path& path) {
@@ -77,7 +79,7 @@ std::string WorkerPool::checked_manifest(const ClaimedStage& stage, const fs::pa
     if (const PathKind kind = kind_of_path(file); kind == PathKind::folder || kind == PathKind::other)
         throw WrongResult("the worker's manifest is " + words_for_path(file));
     std::ifstream stream(file, std::ios::binary);
-    if (!stream && !(errno == ENOENT && fs::is_directory(folder.parent_path())))
+    if (!stream && !(errno == ENOENT && kind_of_path(folder.parent_path()) == PathKind::folder))
         throw Error(ErrorKind::internal, file.string() + ": " + std::generic_category().message(errno), {}, errno);
     std::string text(longest_manifest + 1, '\0');
     stream.read(text.data(), static_cast<std::streamsize>(text.size()));
@@ -205,7 +207,7 @@ void WorkerPool::store_result(const ClaimedStage& stage, std::unique_ptr<WorkFol
         if (name.find('/') != std::string::npos || is_link(folder / name) || !has_its_digest(folder / name, digest))
             throw WrongResult("the worker's file " + name + " is not as its manifest describes it");
         files.push_back({name, digest, entry.at("bytes").get<std::uint64_t>()});
-        sizes[digest] = fs::file_size(folder / name);
+        sizes[digest] = static_cast<std::uint64_t>(facts_of(folder / name).value_or(FileFacts{}).bytes);
     }
     check_fits(stage, sizes);
     const auto held = database_.lock();  // no eviction may come between the blobs and the rows that refer to them

@@ -55,6 +55,13 @@ void BlobStore::lose_without_file(const std::string& digest, const OnLoss& on_lo
     throw lose(digest, on_loss);
 }
 
+std::string BlobStore::advice_for_closed(const std::vector<std::string>& digests) const {
+    for (const std::string& digest : digests)
+        if (::faccessat(AT_FDCWD, path_of(digest).c_str(), R_OK, AT_EACCESS) != 0 && errno != ENOENT)
+            return ". " + advice_for(path_of(digest), errno);
+    return {};
+}
+
 bool BlobStore::is_verified(const std::string& digest, const FileFacts& facts) {
     const std::lock_guard lock(mutex_);
     const auto verified = verified_.find(digest);

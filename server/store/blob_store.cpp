@@ -1,5 +1,6 @@
 #include "server/store/blob_store.h"
 
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -11,6 +12,7 @@
 #include "core/base/assert.h"
 #include "core/base/short_text.h"
 #include "server/store/database.h"
+#include "server/store/disk_reserve.h"
 #include "server/store/input_text.h"
 #include "server/store/refusal.h"
 
@@ -36,6 +38,9 @@ FileFacts read_facts(const struct stat& facts) {
     };
     return {facts.st_size, nanoseconds(facts.st_mtim), nanoseconds(facts.st_ctim)};
 }
+
+/// Whether this process may add files to the folder and remove some.
+bool may_write(const fs::path& folder) { return ::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) == 0; }
 
 }  // namespace
 
@@ -99,7 +104,8 @@ bool BlobStore::adopt(const fs::path& file, const std::string& digest, Origin or
     // Stored bytes that were not verified since the start may be spoiled; those of `file` are good.
     if (!stored || !is_verified(digest, *stored)) {
         clear_place(path);
-        if (::rename(file.c_str(), path.c_str()) != 0) throw_store_error(file, errno);
+        if (::rename(file.c_str(), path.c_str()) != 0)
+            throw_store_error(may_write(file.parent_path()) ? path : file, errno);
         sync_folder(path.parent_path());
         const FileFacts facts = facts_of(path).value_or(FileFacts{});
         database_.write([&](Sql& sql) {
@@ -173,12 +179,21 @@ void BlobStore::remove(const std::vector<std::string>& digests, std::string_view
 /// The rows in `removals` tell the next start that these files may go, should this process die before all are gone.
 void BlobStore::remove(const Choice& choose, std::string_view reason) {
     const auto held = database_.lock();
-    const std::vector<std::string> digests = forget([&](Sql& sql) {
-        std::vector<std::string> chosen = choose(sql);
-        for (const std::string& digest : chosen)
-            sql.run("INSERT OR REPLACE INTO removals VALUES(?, ?)", {digest, now()});
-        return chosen;
-    });
+    std::vector<std::string> digests;
+    try {
+        forget([&](Sql& sql) {
+            digests.clear();
+            digests = choose(sql);
+            for (const std::string& digest : digests)
+                sql.run("INSERT OR REPLACE INTO removals VALUES(?, ?)", {digest, now()});
+            return digests;
+        });
+    } catch (const Error& error) {
+        if (error.system_error() != ENOSPC) throw;
+        std::vector<fs::path> files;
+        for (const std::string& digest : digests) files.push_back(path_of(digest));
+        throw DeletionNeedsRoom(error, std::move(files));
+    }
     FileCount removed;
     for (const std::string& digest : digests) {
         clear_place(path_of(digest));

@@ -126,10 +126,15 @@ public:
     /// Throws as open().
     void check_digest(const std::string& digest, const OnLoss& on_loss, const std::function<void(std::size_t)>& pace);
 
+    /// What keeps this process from reading the first of the files that it may not read, and what to do; empty when it
+    /// may read all. As ". This program may not use FILE ...", to follow a message.
+    std::string advice_for_closed(const std::vector<std::string>& digests) const;
+
     /// Puts off the next check of a blob that could not be read.
     void note_check_failed(const std::string& digest);
 
     /// Removes rows and files, in one transaction. `reason` is for the log.
+    /// Throws DeletionNeedsRoom, and changes nothing, when the disk is full.
     void remove(const std::vector<std::string>& digests, std::string_view reason);
     /// The same for the blobs that `choose` names; it may change other rows in the same transaction.
     using Choice = std::function<std::vector<std::string>(Sql&)>;

@@ -38,7 +38,8 @@ namespace {
     const int code = error.getErrorCode() & 0xff;
     const std::string name = "the database " + file.string();
     if (code == SQLITE_FULL)
-        throw Error(ErrorKind::out_of_resources, name + " cannot grow: its disk is full. " + advice_for(file, ENOSPC));
+        throw Error(ErrorKind::out_of_resources, name + " cannot grow: its disk is full. " + advice_for(file, ENOSPC),
+                    {}, ENOSPC);
     if (code == SQLITE_READONLY || code == SQLITE_IOERR || code == SQLITE_CANTOPEN)
         throw Error(ErrorKind::out_of_resources, name + " cannot be written: " + error.what() +
                                                      ". Check that its disk has room and can be written, and that the "
@@ -239,7 +240,11 @@ void Database::open(const std::filesystem::path& file) {
         reader_->rows("SELECT count(*) FROM sqlite_master", {});  // opens its files
     });
     const std::string real = std::filesystem::canonical(file).string();
-    pins_ = PinnedFiles({file, real + "-wal", real + "-shm"});
+    const std::string save =
+        "Put back the file that was there before; docs/deployment.md tells how to save a deleted database";
+    pins_ = PinnedFiles({{file, save},
+                         {real + "-wal", save},
+                         {real + "-shm", "Put it back, or restart the daemon: SQLite makes a new one at the start"}});
 }
 
 Database::~Database() {
@@ -279,6 +284,17 @@ void Database::write(const std::function<void(Sql&)>& body) {
         ++version_;
     } catch (const SQLite::Exception& error) {
         fail(error, writer_->database.getFilename());
+    }
+}
+
+bool Database::shrink_log() {
+    const auto held = lock();
+    const std::unique_lock no_reader(reading_);
+    try {
+        check_in_place();
+        return writer_->rows("PRAGMA wal_checkpoint(TRUNCATE)", {}).at(0).integer(0) == 0;
+    } catch (const Error&) {  // the database file cannot grow
+        return false;
     }
 }
 

@@ -87,6 +87,9 @@ public:
     void write(const std::function<void(Sql&)>& body);
     /// Runs `body` on one committed state. `body` may not write and may not take lock().
     void read(const std::function<void(Sql&)>& body);
+    /// Writes the log into the database file and cuts it to nothing, as far as no reader uses it and the disk allows.
+    /// Returns whether the log is empty now. Call it outside of read() and write().
+    bool shrink_log();
     /// Grows with each write(), before it returns. A read() that began after this call is current while the number
     /// stays.
     std::uint64_t version() const { return version_; }
@@ -103,7 +106,7 @@ private:
     std::recursive_mutex writing_, reading_;  ///< taken in this order
     const DatabaseHooks hooks_;
     std::unique_ptr<Connection> writer_, reader_;
-    PinnedFiles pins_{{}};  ///< the files that both connections have open
+    PinnedFiles pins_;  ///< the files that both connections have open
     std::atomic<std::uint64_t> version_ = 0;
     bool in_read_ = false;            ///< guarded by reading_
     std::uint64_t version_read_ = 0;  ///< guarded by reading_

@@ -29,6 +29,14 @@ void throw_store_error(const std::filesystem::path& file, int error) {
     throw Error(ErrorKind::internal, "the store's " + file.string() + ": " + words);
 }
 
+std::string error_text(const std::exception& error) {
+    const auto* const failed = dynamic_cast<const std::filesystem::filesystem_error*>(&error);
+    if (!failed) return error.what();
+    const std::filesystem::path& path = failed->path1();
+    return (path.empty() ? "a file of the store" : path.string()) + " cannot be used: " + failed->code().message() +
+           ". " + advice_for(path, failed->code().value());
+}
+
 namespace {
 
 PathKind kind_of_mode(mode_t mode) {

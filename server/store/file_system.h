@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -13,6 +14,10 @@ namespace hairbake {
 /// Throws Refusal(busy) when memory or descriptors are short.
 /// Throws Error(out_of_resources) for a disk that is full or cannot be written, Error(internal) otherwise.
 [[noreturn]] void throw_store_error(const std::filesystem::path& file, int error);
+
+/// The message for people. That of std::filesystem ("filesystem error: status: Permission denied [...]") is replaced by
+/// the path, the system's reason and what to do; any other stays.
+std::string error_text(const std::exception& error);
 
 /// What is at a path. A symbolic link counts as what it leads to.
 enum class PathKind {

@@ -7,6 +7,8 @@
 #include <system_error>
 #include <utility>
 
+#include "server/store/file_system.h"
+
 namespace hairbake {
 namespace fs = std::filesystem;
 namespace {
@@ -52,7 +54,7 @@ void LostFound::take(const fs::path& file, FileCount& count) try {
     ++count.files;
     count.bytes += error ? 0 : bytes;
 } catch (const fs::filesystem_error& error) {
-    spdlog::warn("{} stays where it is: {}", file.string(), error.what());
+    spdlog::warn("{} stays where it is: {}", file.string(), error_text(error));
 }
 
 }  // namespace hairbake

@@ -10,9 +10,10 @@
 
 namespace hairbake {
 
-PinnedFiles::PinnedFiles(const std::vector<std::filesystem::path>& paths) {
-    for (const std::filesystem::path& path : paths)
-        if (struct stat facts{}; ::stat(path.c_str(), &facts) == 0) pins_.push_back({path, facts.st_dev, facts.st_ino});
+PinnedFiles::PinnedFiles(const std::vector<Path>& paths) {
+    for (const Path& pinned : paths)
+        if (struct stat facts{}; ::stat(pinned.path.c_str(), &facts) == 0)
+            pins_.push_back({pinned.path, pinned.advice, facts.st_dev, facts.st_ino});
 }
 
 void PinnedFiles::check() const {
@@ -26,8 +27,7 @@ void PinnedFiles::check() const {
             throw Refusal(Refused::busy, path + " cannot be reached: " + std::generic_category().message(error) +
                                              "; nothing is written. " + advice_for(pin.path, error));
         throw Refusal(Refused::busy, path + " was " + (is_gone ? "moved or deleted" : "replaced") +
-                                         " while the daemon works with it; nothing is written. Put the file back that "
-                                         "was there before; docs/deployment.md tells how to save a deleted database");
+                                         " while the daemon works with it; nothing is written. " + pin.advice);
     }
 }
 

@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace hairbake {
@@ -11,8 +12,14 @@ namespace hairbake {
 /// Which files stand at some paths, by device and inode. Immutable, so thread-safe.
 class PinnedFiles {
 public:
+    struct Path {
+        std::filesystem::path path;
+        std::string advice;  ///< what mends the loss of this file; a sentence without a full stop
+    };
+
+    PinnedFiles() = default;
     /// Remembers the files that are at `paths` now; leaves out paths at which there is none.
-    explicit PinnedFiles(const std::vector<std::filesystem::path>& paths);
+    explicit PinnedFiles(const std::vector<Path>& paths);
 
     /// One stat() a path.
     /// Throws Refusal(busy), naming the path, when another file or none is at one of them, and with the system's reason
@@ -22,6 +29,7 @@ public:
 private:
     struct Pin {
         std::filesystem::path path;
+        std::string advice;
         dev_t device;
         ino_t inode;
     };

@@ -14,6 +14,7 @@ enum class Refused {
     conflict,   ///< with the present state of the service
     too_large,  ///< more bytes than allowed
     too_many,   ///< one token has too many of something
+    too_slow,   ///< the body did not arrive in time
     full,       ///< the store's budget is used up
     busy        ///< try again later
 };

@@ -9,6 +9,7 @@
 #include "core/base/assert.h"
 #include "server/store/blob_store.h"
 #include "server/store/database.h"
+#include "server/store/disk_reserve.h"
 #include "server/store/eviction.h"
 #include "server/store/file_system.h"
 #include "server/store/refusal.h"
@@ -23,8 +24,9 @@ std::string mb(std::uint64_t bytes) { return std::to_string(bytes >> 20); }
 
 }  // namespace
 
-Room::Room(Database& database, BlobStore& store, std::filesystem::path folder, const RoomLimits& limits)
-    : database_(database), store_(store), folder_(std::move(folder)), limits_(limits) {}
+Room::Room(Database& database, BlobStore& store, DiskReserve& reserve, std::filesystem::path folder,
+           const RoomLimits& limits)
+    : database_(database), store_(store), reserve_(reserve), folder_(std::move(folder)), limits_(limits) {}
 
 Room::Share::Share(Share&& other) noexcept
     : room_(std::exchange(other.room_, nullptr)),
@@ -163,7 +165,7 @@ void Room::make_room(std::uint64_t bytes, const Counters& own) {
     if (fits(bytes)) return;
     const auto held = database_.lock();
     const std::uint64_t more = require_room(bytes, own);
-    evict(database_, store_, limits_.budget, more);
+    evict_beside(more);
 }
 
 void Room::require_room(std::uint64_t bytes) {
@@ -184,7 +186,12 @@ std::uint64_t Room::require_room(std::uint64_t bytes, const Counters& own) {
     return more;
 }
 
-void Room::trim() { evict(database_, store_, limits_.budget, others()); }
+void Room::trim() { evict_beside(others()); }
+
+/// Also on a full disk. What one transaction of an eviction did stays done when the next one fails.
+void Room::evict_beside(std::uint64_t others) {
+    if (excess(others) > 0) reserve_.run([&] { evict(database_, store_, limits_.budget, others); });
+}
 
 /// By how much the store's blobs and `more` pass the budget.
 std::uint64_t Room::excess(std::uint64_t more) const {

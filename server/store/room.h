@@ -18,6 +18,7 @@ namespace hairbake {
 
 class BlobStore;
 class Database;
+class DiskReserve;
 
 struct RoomLimits {
     std::uint64_t budget = 0;     ///< bytes of blobs, unfinished uploads and bodies under way
@@ -36,8 +37,9 @@ class Room {
     };
 
 public:
-    /// `folder` is the store's. The others must outlive this object.
-    Room(Database& database, BlobStore& store, std::filesystem::path folder, const RoomLimits& limits);
+    /// `folder` is the store's. The others must outlive this object. Evictions use `reserve` on a full disk.
+    Room(Database& database, BlobStore& store, DiskReserve& reserve, std::filesystem::path folder,
+         const RoomLimits& limits);
 
     /// In bytes.
     std::uint64_t budget() const { return limits_.budget; }
@@ -113,6 +115,7 @@ private:
     std::uint64_t require_room(std::uint64_t bytes, const Counters& own);
     std::optional<std::string> disk_warning();
     std::optional<std::string> input_warning();
+    void evict_beside(std::uint64_t others);
     void arrive(std::uint64_t bytes, bool counts);
     void set_kept(const std::string& upload, std::uint64_t bytes);
     std::uint64_t others() const;
@@ -123,6 +126,7 @@ private:
 
     Database& database_;
     BlobStore& store_;
+    DiskReserve& reserve_;
     const std::filesystem::path folder_;
     const RoomLimits limits_;
     mutable std::mutex mutex_;  ///< guards the members below; taken after database.lock(), never before

@@ -24,7 +24,10 @@ fs::path closed_at(const fs::path& named) {
         above /= part;
     }
     struct stat facts {};
-    return ::stat(path.c_str(), &facts) == 0 ? path : path.parent_path();
+    if (::stat(path.c_str(), &facts) != 0) return path.parent_path();
+    // A file that may be read and written: its folder forbids to replace it.
+    const bool is_open = ::faccessat(AT_FDCWD, path.c_str(), R_OK | W_OK, AT_EACCESS) == 0;
+    return is_open && S_ISREG(facts.st_mode) ? path.parent_path() : path;
 }
 
 /// "it belongs to user 0 and has the mode 0700"; empty when the system does not tell.

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -11,6 +12,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "server/store/disk_reserve.h"
 #include "server/store/store_access.h"
 #include "server/store/store_identity.h"
 
@@ -39,6 +41,25 @@ Descriptor lock_path(const fs::path& path, int flags, const fs::path& store) {
     if (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
         throw Error(ErrorKind::usage, "another hairbaked works on the store " + store.string());
     return lock;
+}
+
+/// The folder and its parts with what a person can do when one is gone or replaced. A restart takes what is there then.
+std::vector<PinnedFiles::Path> pinned_parts(const fs::path& folder) {
+    const std::string restart = "Put it back, or restart the daemon, which makes a new one";
+    return {{folder, "Put the folder back that was there before"},
+            {folder / "lock", restart},
+            {folder / "tmp", restart},
+            {folder / "uploads", restart + "; the unfinished uploads in the old one are lost then"},
+            {folder / "blobs",
+             "Put the folder back that was there before. To use what is there now, restart the daemon"}};
+}
+
+void require_usable(const fs::path& folder) {
+    if (::faccessat(AT_FDCWD, folder.c_str(), R_OK | W_OK | X_OK, AT_EACCESS) == 0) return;
+    if (errno != ENOENT) throw_store_error(folder / "file", errno);
+    throw Error(ErrorKind::out_of_resources,
+                "the folder " + folder.string() +
+                    " is missing. Put it back with its files, or restart the daemon, which makes an empty one");
 }
 
 dev_t device_of(const fs::path& path, dev_t otherwise) {
@@ -82,9 +103,15 @@ StoreFolder::StoreFolder(fs::path folder, const std::string& expected_id, StoreU
     check_parts();
     lock_ = lock_path(path_ / "lock", O_RDWR | O_CREAT, path_);
     make_parts();
-    std::vector<fs::path> pinned{path_, path_ / "lock"};
-    for (const char* part : parts) pinned.push_back(path_ / part);
-    pins_ = PinnedFiles(pinned);
+    pins_ = PinnedFiles(pinned_parts(path_));
+    DiskReserve::release_if_full(path_);
+}
+
+void StoreFolder::check_usable() const {
+    for (const char* part : parts) require_usable(path_ / part);
+    constexpr std::string_view digits = "0123456789abcdef";
+    for (const char high : digits)
+        for (const char low : digits) require_usable(path_ / "blobs" / std::string{high, low});
 }
 
 DatabaseHooks StoreFolder::hooks() const {

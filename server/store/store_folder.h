@@ -46,6 +46,10 @@ public:
     /// Throws Refusal(busy) when the folder or a part of it was moved, deleted or replaced.
     void check_in_place() const { pins_.check(); }
 
+    /// Throws Error(out_of_resources), naming the folder, the reason and what to do, when this process may not read and
+    /// write one of the folders of files.
+    void check_usable() const;
+
 private:
     void check_database_file() const;
     void check_before_new_database() const;
@@ -57,7 +61,7 @@ private:
     std::string expected_id_;
     StoreUse use_;
     Descriptor folder_lock_, lock_;
-    PinnedFiles pins_{{}};
+    PinnedFiles pins_;
 };
 
 }  // namespace hairbake

@@ -14,6 +14,8 @@ from harness import PATIENCE, Daemon, sha256
 DOCKER = Path(__file__).resolve().parents[2] / "docker"
 TOKEN = "the token of the tests"
 NOBODY = 65534
+AUTHORITY = f"Host: localhost\r\nAuthorization: Bearer {TOKEN}\r\n"
+ACCEL = 'accel = "/blobs/"'
 
 
 def admin_token():
@@ -108,3 +110,8 @@ class Front:
 def trusting(front):
     """A TLS context that knows the front's certificate alone."""
     return ssl.create_default_context(cafile=front.path / "chain.pem")
+
+
+def statuses(answer):
+    """Of the replies in what a raw connection gave."""
+    return [int(s) for s in re.findall(rb"HTTP/1\.1 (\d{3}) ", answer)]

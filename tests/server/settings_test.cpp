@@ -26,6 +26,8 @@ TEST_F(SettingsTest, TheDocumentedFileHasEveryDefault) {
     EXPECT_EQ(from_file.waiting, defaults.waiting);
     EXPECT_EQ(from_file.bodies, defaults.bodies);
     EXPECT_EQ(from_file.bodies_per_address, defaults.bodies_per_address);
+    EXPECT_EQ(from_file.body_rate, defaults.body_rate);
+    EXPECT_EQ(from_file.body_window_s, defaults.body_window_s);
     EXPECT_EQ(from_file.budget_bytes, defaults.budget_bytes);
     EXPECT_EQ(from_file.keep_free_bytes, defaults.keep_free_bytes);
     EXPECT_EQ(from_file.blob_bytes, defaults.blob_bytes);

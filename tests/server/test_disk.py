@@ -1,50 +1,10 @@
-"""A store whose disk is full or cannot be written: a small tmpfs in a mount namespace of the daemon's own."""
-import errno
+"""A store whose disk is full or cannot be written."""
 import os
-import subprocess
 import time
 import unittest
-from pathlib import Path
 
-from harness import PATIENCE, TUS, Daemon, hair_bytes, hdr_bytes, quick_request, sha256
-
-SIZE_MB = 8
-
-
-class SmallDisk(Daemon):
-    """The store is a tmpfs of SIZE_MB that only the daemon and its workers see; it is gone when the daemon ends."""
-
-    def __init__(self, config="keep_free_mb = 0", size_mb=SIZE_MB):
-        super().__init__(config=config)
-        self.store = self.path / "store"
-        self.store.mkdir()
-        mount = f'mount -t tmpfs -o size={size_mb}m none "$0" && exec "$@"'
-        self.before = ["unshare", "--map-root-user", "--mount", "sh", "-c", mount, self.store]
-
-    @property
-    def inside(self):
-        """The store as the daemon sees it."""
-        return Path(f"/proc/{self.process.pid}/root{self.store}")
-
-    def run_inside(self, script):
-        subprocess.run(["nsenter", "--target", str(self.process.pid), "--user", "--mount", "--preserve-credentials", "sh", "-c",
-                        script, self.store], check=True, timeout=PATIENCE)
-
-    def fill(self, leave=0):
-        """Writes until nothing fits any more, then gives `leave` bytes free."""
-        with open(self.inside / "filler", "wb", buffering=0) as filler:
-            try:
-                while filler.write(bytes(4096)):
-                    pass
-            except OSError as error:
-                assert error.errno == errno.ENOSPC, error
-            filler.truncate(filler.tell() - leave)
-
-    def free_filler(self):
-        (self.inside / "filler").unlink()
-
-    def leftovers(self):
-        return sorted(p.name for p in (self.inside / "tmp").iterdir())
+from disks import SmallDisk
+from harness import PATIENCE, TUS, hair_bytes, hdr_bytes, quick_request, sha256
 
 
 def verified(test, d, bake):
@@ -145,60 +105,6 @@ class Disk(unittest.TestCase):
             self.assertNotEqual(process.wait(PATIENCE), 0)
             process.stdout.close()
             self.assertIn("Read-only file system", (d.path / "log").read_text())
-
-
-class DeletionOnFullDisk(unittest.TestCase):
-    """Fault: a DELETE needed a little room on the disk, so a full disk refused the remedy."""
-
-    def test_a_deletion_makes_room_on_a_full_disk(self):
-        """Relatives: a mesh, a model with its thumbnail, an environment by force, an unfinished upload."""
-        with SmallDisk(size_mb=64) as d:
-            hair, sky, mesh = d.put(hair_bytes()), d.put(hdr_bytes()), d.put(os.urandom(2 << 20))
-            for kind, digest in (("model", hair), ("environment", sky)):
-                self.assertEqual(d.ask("POST", f"/v1/{kind}s", {"sha256": digest}).status, 201)
-            self.assertEqual(d.ask("PUT", "/v1/names/environment/dusk", {"sha256": sky}).status, 200)
-            upload = d.create_upload(bytes(300_000)).headers["Location"]
-            self.assertEqual(d.append(upload, 0, bytes(200_000)).status, 204)
-            for path, headers in ((f"/v1/models/{hair}", {}), (f"/v1/environments/{sky}?force=1", {}), (upload, TUS),
-                                  (f"/v1/blobs/{mesh}", {})):
-                with self.subTest(path):
-                    self.make_log_full(d)
-                    self.assertEqual(d.ask("PUT", "/v1/names/mesh/x", {"sha256": mesh}).status, 507)
-                    reply = d.ask("DELETE", path, headers=headers)
-                    self.assertEqual(reply.status, 204, reply.body)
-                    d.free_filler()
-                    self.assertEqual(d.ask("GET", "/readyz").status, 200)
-                    # The next deletion makes the reserve again; so does the daemon once a minute.
-                    self.assertEqual(d.ask("DELETE", f"/v1/blobs/{d.put(b'small')}").status, 204)
-            self.assertIn("are given to a deletion", (d.path / "log").read_text())
-            self.assertEqual([blob["sha256"] for blob in d.ask("GET", "/v1/blobs").json["blobs"]], [])
-
-    def make_log_full(self, d):
-        """Fills the disk so that the database's log cannot grow. The log keeps the size that it once had, and is begun anew
-        after a checkpoint: so it is emptied first."""
-        database = d.inside / "hairbake.db"
-        subprocess.run(["nsenter", "--target", str(d.process.pid), "--user", "--mount", "--preserve-credentials", "python3", "-c",
-                        "import sqlite3, sys; sqlite3.connect(sys.argv[1]).execute('PRAGMA wal_checkpoint(TRUNCATE)')",
-                        d.store / "hairbake.db"], check=True, timeout=PATIENCE)
-        self.assertEqual((database.parent / "hairbake.db-wal").stat().st_size, 0)
-        d.fill()
-
-    def test_relative_without_a_reserve_the_reply_says_why_not_and_what_to_do(self):
-        """A small disk has no reserve."""
-        with SmallDisk() as d:
-            mesh = d.put(os.urandom(1 << 20))
-            self.assertFalse((d.inside / "reserve").exists())
-            self.make_log_full(d)
-            reply = d.ask("DELETE", f"/v1/blobs/{mesh}")
-            self.assertEqual(reply.status, 507)
-            self.assertRegex(reply.json["detail"], f"^nothing was changed: the database {d.store}/hairbake.db cannot .*disk")
-            self.assertEqual(d.ask("HEAD", f"/v1/blobs/{mesh}").status, 200)
-            ready = d.ask("GET", "/readyz")
-            self.assertEqual(ready.status, 503)
-            self.assertIn(f"the store cannot grow in {d.store}/tmp: No space left on device. Make room on its disk: delete inputs "
-                          "that nothing needs (GET /v1/blobs?unneeded=1 lists them)", ready.json["detail"])
-            d.free_filler()
-            self.assertEqual(d.ask("DELETE", f"/v1/blobs/{mesh}").status, 204)
 
 
 if __name__ == "__main__":

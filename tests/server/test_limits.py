@@ -93,10 +93,10 @@ def reply_on_only_head(daemon, *lines):
 class Connections(unittest.TestCase):
     def test_a_full_queue_answers_503_and_says_when_to_come_again(self):
         with Daemon(listen="port = 0\nthreads = 2\nwaiting = 3") as d:
-            held = []
+            held, long = [], bytes(100_000)  # a short one would give its thread to those that wait
             for _ in range(2):  # each occupies a thread, which waits for the body
                 s = d.connect()
-                s.sendall(head("PUT", f"/v1/blobs/{sha256(b'hello')}", "Content-Length: 5", "Expect: 100-continue"))
+                s.sendall(head("PUT", f"/v1/blobs/{sha256(long)}", f"Content-Length: {len(long)}", "Expect: 100-continue"))
                 self.assertEqual(received(s, 25), b"HTTP/1.1 100 Continue\r\n\r\n")
                 held.append(s)
             idle = [d.connect() for _ in range(3)]  # these fill the queue, in the order in which they came
@@ -105,7 +105,7 @@ class Connections(unittest.TestCase):
                              (503, "2", "application/problem+json"))
             self.assertEqual(reply.json["type"], "urn:hairbake:problem:busy")
             for s in held:
-                s.sendall(b"hello")
+                s.sendall(long)
                 self.assertIn(reply_on(s)[0], (200, 201))
                 s.close()
             for s in idle:

@@ -5,7 +5,7 @@ import time
 import unittest
 
 from harness import PATIENCE, PROGRAMS, TUS, Daemon, hair_bytes, hdr_bytes, sha256
-from test_room import head, under_way
+from rooms import head, under_way
 
 OCTETS = {"Content-Type": "application/octet-stream"}
 

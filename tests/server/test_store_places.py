@@ -5,8 +5,8 @@ import socket
 import stat
 import unittest
 
-from harness import TUS, Daemon, hair_bytes, hdr_bytes, quick_request, sha256
-from test_store_start import Store, StoreTest
+from harness import TUS, Daemon, hair_bytes, hdr_bytes, quick_request
+from stores import Store, StoreTest
 
 
 def pipe(path):
@@ -158,68 +158,6 @@ class ForeignEntries(StoreTest):
                 (d.store / "store-id").write_bytes(kept)
             d.start()
             self.assert_serves_all(d)
-
-
-class Closed(unittest.TestCase):
-    """Fault: a store whose folder was closed to the daemon was told to be replaced."""
-
-    def test_a_folder_that_is_closed_is_told_with_the_reason_and_what_to_do(self):
-        with Daemon() as d:
-            d.become_bound_to_modes()
-            digest = d.put(b"kept")
-            store = d.path / "store"
-            # The database may be a link into another folder.
-            d.stop()
-            elsewhere = store / "elsewhere"
-            elsewhere.mkdir()
-            for end in ("", "-wal", "-shm"):
-                if (store / f"hairbake.db{end}").exists():
-                    (store / f"hairbake.db{end}").rename(elsewhere / f"hairbake.db{end}")
-            (store / "hairbake.db").symlink_to(elsewhere / "hairbake.db")
-            d.start()
-            for closed in (store, elsewhere):
-                with self.subTest(closed.name):
-                    mode = closed.stat().st_mode
-                    closed.chmod(0)
-                    try:
-                        ready = d.ask("GET", "/readyz")
-                        written = d.ask("PUT", "/v1/names/mesh/x", {"sha256": digest})
-                    finally:
-                        closed.chmod(mode)
-                    for reply in (ready, written):
-                        self.assertEqual(reply.status, 503)
-                        self.assertIn("cannot be reached: Permission denied; nothing is written", reply.json["detail"])
-                        self.assertIn(f"may not use {closed}: it belongs to user {os.geteuid()} and has the mode 0000",
-                                      reply.json["detail"])
-                        self.assertIn(f"`chmod u+rwX {closed}`", reply.json["detail"])
-                        self.assertNotIn("replaced", reply.json["detail"])
-                    self.assertEqual(d.ask("GET", "/readyz").status, 200)
-            # A database that is closed while the daemon has it open keeps working.
-            (elsewhere / "hairbake.db").chmod(0)
-            self.assertEqual(d.ask("GET", "/readyz").status, 200)
-            self.assertEqual(d.ask("PUT", "/v1/names/mesh/x", {"sha256": digest}).status, 200)
-
-    def test_relative_parts_that_may_not_be_written(self):
-        """The message had neither the path nor what to do."""
-        with Daemon() as d:
-            d.become_bound_to_modes()
-            upload = d.create_upload(b"an upload").headers["Location"]
-            data = b"new"
-            for part, ask in (("tmp", lambda: d.ask("GET", "/readyz")),
-                              ("tmp", lambda: d.ask("PUT", f"/v1/blobs/{sha256(data)}", data)),
-                              ("uploads", lambda: d.create_upload(b"another")),
-                              ("uploads", lambda: d.append(upload, 0, b"an upload"))):
-                closed = d.path / "store" / part
-                mode = closed.stat().st_mode
-                closed.chmod(0)
-                try:
-                    reply = ask()
-                finally:
-                    closed.chmod(mode)
-                self.assertIn(reply.status, (503, 507), reply.body)
-                self.assertIn(f"in {closed}: Permission denied. ", reply.json["detail"])
-                self.assertIn(f"`chmod u+rwX {closed}`", reply.json["detail"])
-            self.assertEqual(d.append(upload, 0, b"an upload").status, 204)
 
 
 class LinkedUploads(StoreTest):

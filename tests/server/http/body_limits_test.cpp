@@ -10,6 +10,7 @@
 
 #include "core/base/short_text.h"
 #include "server/http/body_budget.h"
+#include "server/http/body_pace.h"
 #include "server/http/body_places.h"
 #include "server/http/body_shape.h"
 #include "server/http/utf8.h"
@@ -37,8 +38,42 @@ TEST(BodyPlaces, CountInAllAndForEachAddress) {
     EXPECT_EQ(places.refusal("192.0.2.3"),
               "4 uploads and long bodies are under way; allowed are up to 4 at once ([listen] bodies)");
     held[0].reset();
+    EXPECT_FALSE(places.take("192.0.2.1"));  // it has one, and one is free
+    EXPECT_EQ(places.refusal("192.0.2.1"),
+              "1 uploads and long bodies are under way from your address, and 1 of 4 places are free; an address may "
+              "take one more only while more are free than it has ([listen] bodies)");
+    EXPECT_TRUE(places.take("192.0.2.3"));
+    held[1].reset();
     EXPECT_TRUE(places.take("192.0.2.1"));
     EXPECT_TRUE(places.take("192.0.2.1"));  // the first of these is free again
+}
+
+TEST(BodyPlaces, KeepSomeForAddressesThatHaveNone) {
+    BodyPlaces places(48, 16);
+    std::vector<BodyPlaces::Place> held;
+    std::vector<int> counts;
+    for (int address = 1; address <= 8; ++address) {
+        const std::string text = "192.0.2." + std::to_string(address);
+        counts.push_back(0);
+        while (auto place = places.take(text)) {
+            held.push_back(std::move(*place));
+            ++counts.back();
+        }
+    }
+    // An address with k places stops when no more than k are free.
+    EXPECT_EQ(counts, (std::vector<int>{16, 16, 8, 4, 2, 1, 1, 0}));
+}
+
+TEST(BodyPace, CountsWhatCameInEachWindowOfWaiting) {
+    using namespace std::chrono_literals;
+    BodyPace pace({1000, 10s});
+    EXPECT_TRUE(pace.add(1, 9s));
+    EXPECT_TRUE(pace.add(9999, 1s));  // 10,000 bytes in 10 s
+    EXPECT_TRUE(pace.add(1'000'000, 0s));
+    EXPECT_TRUE(pace.add(0, 10s));  // what came before the wait is of this window, too
+    EXPECT_FALSE(pace.add(9999, 10s));
+    BodyPace any({0, 10s});
+    EXPECT_TRUE(any.add(0, 1000s));
 }
 
 TEST(BodyPlaces, OfAnIpv6AddressCountTheFirst64Bits) {

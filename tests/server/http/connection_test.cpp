@@ -14,8 +14,8 @@ namespace hairbake {
 namespace {
 
 using namespace std::chrono_literals;
-constexpr Connection::Patience short_patience{.first_byte = 20ms, .read = 20ms, .write = 20ms};
-constexpr Connection::Patience long_patience{.first_byte = 60s, .read = 60s, .write = 60s};
+constexpr Connection::Patience short_patience{.head = 20ms, .read = 20ms, .write = 20ms};
+constexpr Connection::Patience long_patience{.head = 60s, .read = 60s, .write = 60s};
 
 /// A connection and the client's end of it.
 struct Pair {
@@ -68,7 +68,7 @@ TEST(Connection, ReadsByteByByteWhatTheClientSentAtOnceAndThenItsEnd) {
     Pair pair(long_patience);
     pair.send("GET / HTTP/1.1");
     pair.hang_up();
-    ASSERT_TRUE(pair.connection.await_request(always));
+    ASSERT_TRUE(pair.connection.await_head(always));
     std::string text;
     for (std::string byte; !(byte = read(pair.connection, 1)).empty();) text += byte;
     EXPECT_EQ(text, "GET / HTTP/1.1");
@@ -122,7 +122,7 @@ TEST(Connection, LargeAndSmallReadsMixWithoutLosingAByte) {
         ::shutdown(pair.client, SHUT_WR);
     });
     std::string got;
-    ASSERT_TRUE(pair.connection.await_request(always));
+    ASSERT_TRUE(pair.connection.await_head(always));
     for (std::size_t size = 1;; size = size * 5 % 20'000 + 1) {
         const std::string piece = read(pair.connection, size);
         if (piece.empty()) break;
@@ -133,7 +133,7 @@ TEST(Connection, LargeAndSmallReadsMixWithoutLosingAByte) {
 
 TEST(Connection, AClientThatIsSilentOrDoesNotReadIsGivenUp) {
     Pair pair(short_patience);
-    EXPECT_FALSE(pair.connection.await_request(always));
+    EXPECT_FALSE(pair.connection.await_head(always));
     char byte = 0;
     EXPECT_EQ(pair.connection.read(&byte, 1), -1);
     const std::string more_than_a_socket_holds(8 << 20, 'x');
@@ -143,7 +143,7 @@ TEST(Connection, AClientThatIsSilentOrDoesNotReadIsGivenUp) {
 TEST(Connection, NobodyIsWaitedForAnyMoreWhenTheServiceEnds) {
     Pair pair(long_patience);  // else the test lasts a minute
     int asked = 0;
-    EXPECT_FALSE(pair.connection.await_request([&] { return ++asked < 3; }));
+    EXPECT_FALSE(pair.connection.await_head([&] { return ++asked < 3; }));
 }
 
 TEST(Connection, AClientThatIsGoneIsAFailureAndNoSignal) {

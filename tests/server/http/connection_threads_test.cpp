@@ -88,7 +88,7 @@ struct House {
 struct Running {
     Running(int count, int waiting)
         : threads(
-              door.listening, count, waiting, [this](int socket) { house.serve(socket); },
+              door.listening, count, waiting, [this](int socket, const ConnectionThreads&) { house.serve(socket); },
               [this](int socket) { house.refuse(socket); }),
           runner([this] { threads.join(); }) {}
     ~Running() {  // when the test failed
@@ -113,7 +113,8 @@ struct Running {
 int served_by(int listening, bool stopped) {
     House house;
     ConnectionThreads threads(
-        listening, 4, 4, [&](int socket) { house.serve(socket); }, [&](int socket) { house.refuse(socket); });
+        listening, 4, 4, [&](int socket, const ConnectionThreads&) { house.serve(socket); },
+        [&](int socket) { house.refuse(socket); });
     if (stopped) threads.stop();
     threads.join();
     return house.served;
