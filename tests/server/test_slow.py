@@ -1,5 +1,6 @@
 """Clients that send slowly: bodies that hold places, heads and idle connections that hold threads."""
 import contextlib
+import select
 import threading
 import time
 import unittest
@@ -111,7 +112,8 @@ class SlowHeads(unittest.TestCase):
                             ("a body", head("POST", "/v1/bakes", 60_000, {"Content-Type": "application/json"}) + b" ")):
             with self.subTest(name), Daemon() as d, Slow(d, begun, 70) as slow:
                 self.assert_healthy(d)
-                found = answer(slow.sockets[0])
+                answered = select.select(slow.sockets, [], [], PATIENCE)[0]  # six had to wait, so at least six were given up
+                found = answer(answered[0])
                 self.assertIn(b" 408 ", found.splitlines()[0])
                 self.assertIn(b"urn:hairbake:problem:too-slow", found)
                 self.assertRegex(found, b"while other connections waited: send it again, whole")
@@ -123,7 +125,7 @@ class SlowHeads(unittest.TestCase):
                 stack.enter_context(d.connect())
             begin = time.monotonic()
             self.assert_healthy(d)
-            self.assertLess(time.monotonic() - begin, 10)
+            self.assertLess(time.monotonic() - begin, 10)  # 250 of them need 4 s: a second for each 64
 
     def test_relative_a_head_that_comes_slowly_is_served_while_no_other_waits(self):
         with Daemon() as d, d.connect() as s:
