@@ -8,6 +8,8 @@
 #include <system_error>
 #include <thread>
 
+#include "server/store/store_advice.h"
+
 namespace hairbake {
 namespace {
 
@@ -32,8 +34,13 @@ Outcome outcome_of(const LastWord& word, bool was_stopped) {
 /// Why the work folder cannot be used any more: errno, or 0.
 int error_of_folder(const WorkFolder& folder) { return ::access(folder.path().c_str(), W_OK | X_OK) == 0 ? 0 : errno; }
 
-Outcome trouble_with(const std::string& what, int error) {
-    return {End::trouble, "{}", ErrorKind::out_of_resources, what + ": " + std::generic_category().message(error), {}};
+Outcome trouble_with(const std::string& what, const std::filesystem::path& file, int error) {
+    const std::string advice = error == ENOENT ? "" : ". " + advice_for(file, error);
+    return {End::trouble,
+            "{}",
+            ErrorKind::out_of_resources,
+            what + ": " + std::generic_category().message(error) + advice,
+            {}};
 }
 
 /// `program` is the worker's. `was_stopped`: on the caller's wish.
@@ -49,8 +56,8 @@ Outcome conclude(const RunStatus& status, const WorkerWords& words, const WorkFo
                 "the worker wrote a line of more than 1 MiB or more than 64 MiB of words",
                 {}};
     if (status.state == State::over_limit) return {End::failed, "{}", ErrorKind::out_of_resources, status.message, {}};
-    if (words.trouble()) return trouble_with("the worker's words cannot be read", words.trouble());
-    if (const int error = error_of_folder(folder)) return trouble_with("the work folder is gone", error);
+    if (words.trouble()) return trouble_with("the worker's words cannot be read", folder.words(), words.trouble());
+    if (const int error = error_of_folder(folder)) return trouble_with("the work folder is gone", folder.path(), error);
     if (!words.has_begun())
         return {End::trouble,
                 "{}",

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/request/stages.h"
+#include "server/store/file_system.h"
 
 namespace hairbake {
 namespace {
@@ -37,7 +38,7 @@ Outcome run_trial(Runner& runner, const std::filesystem::path& incoming, const s
         return outcome(End::trouble, "it was not done after " + std::to_string(longest_trial.count()) + " seconds");
     return trial;
 } catch (const std::exception& error) {
-    return outcome(End::trouble, error.what());
+    return outcome(End::trouble, error_text(error));
 }
 
 Outcome explain_death(Outcome death, Runner& runner, const std::filesystem::path& incoming,

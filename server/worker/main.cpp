@@ -122,11 +122,13 @@ int fail(const Error& error, const std::string& task, const fs::path& folder) {
     return 1;
 }
 
-/// No thread can be started: by the limit of memory, for the thread's stack, or because the machine has no more.
+/// Of std::filesystem; or no thread can be started: by the limit of memory, for the thread's stack, or because the machine has no more.
 Error error_of(const std::system_error& error) {
     if (error.code() == std::errc::resource_unavailable_try_again && hairbake::memory_limit_refuses(largest_stack))
         return Error(ErrorKind::out_of_resources, "the worker's memory limit was reached");
-    return Error(ErrorKind::out_of_resources, error.what(), {}, error.code().value());
+    const auto* const of_file = dynamic_cast<const fs::filesystem_error*>(&error);
+    const std::string found = of_file ? of_file->path1().string() + ": " + error.code().message() : error.what();
+    return Error(ErrorKind::out_of_resources, found, {}, error.code().value());
 }
 
 int work(const std::string& task, const fs::path& folder, hairbake::BakeProgress& progress) {

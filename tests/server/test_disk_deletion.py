@@ -33,7 +33,7 @@ class DeletionOnFullDisk(unittest.TestCase):
     def test_successive_deletions_while_another_program_takes_what_is_freed(self):
         """Fault: the first deletion used up the reserve, and the second one was refused. Relatives: a model, small files that free
         less than their deletion writes, the cancellation of a bake, an unfinished upload."""
-        with SmallDisk(size_mb=16) as d:
+        with SmallDisk(size_mb=24) as d:
             hair = d.put(hair_bytes())
             self.assertEqual(d.ask("POST", "/v1/models", {"sha256": hair}).status, 201)
             worked_on = d.put(hair_bytes(seed=1))
