@@ -6,6 +6,7 @@
 #include "server/jobs/queue.h"
 #include "server/store/blob_store.h"
 #include "server/store/database.h"
+#include "server/store/store_advice.h"
 
 namespace hairbake {
 namespace {
@@ -135,7 +136,7 @@ Queue::Pause Queue::paused() {
 std::string Queue::trouble_of(const std::string& stage) {
     const std::lock_guard lock(mutex_);
     const std::string own = pause_.reason_of(stage);
-    return own.empty() ? pause_.reason() : own;
+    return without_path(own.empty() ? pause_.reason() : own, store_.incoming_folder().parent_path());
 }
 
 }  // namespace hairbake

@@ -24,6 +24,7 @@
 #include "server/store/database.h"
 #include "server/store/file_system.h"
 #include "server/store/room.h"
+#include "server/store/store_advice.h"
 
 namespace hairbake {
 namespace fs = std::filesystem;
@@ -49,12 +50,6 @@ std::vector<Phase> phases_of(const ClaimedStage& stage) {
     BakeRequest request;
     merge_json(request, stage.request, "the stage's request");
     return planned_phases(std::span(&known, 1), request);
-}
-
-/// Clients see the message; they need not know where the store is.
-void hide(std::string& message, const std::string& folder) {
-    for (std::size_t at = 0; (at = message.find(folder)) != std::string::npos;)
-        message.replace(at, folder.size(), "the store");
 }
 
 /// By the system's text, which the messages of workers and of the store have.
@@ -108,7 +103,7 @@ void WorkerPool::run_to_the_end(const ClaimedStage& stage) {
     } catch (...) {
         outcome = outcome_of_exception();
         if (outcome.end != End::trouble)  // what the machine lacks is for the operator, who needs the path
-            hide(outcome.message, store_.incoming_folder().parent_path().string());
+            outcome.message = without_path(outcome.message, store_.incoming_folder().parent_path());
     }
     if (outcome.end == End::died || (outcome.end == End::failed && outcome.kind == ErrorKind::internal))
         outcome = explain_death(std::move(outcome), runner_, store_.incoming_folder(),

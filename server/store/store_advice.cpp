@@ -76,4 +76,11 @@ std::string advice_for(const fs::path& path, int error) {
     }
 }
 
+std::string without_path(std::string text, const fs::path& store) {
+    const std::string folder = store.string(), words = "the store";
+    for (std::size_t at = 0; (at = text.find(folder, at)) != std::string::npos; at += words.size())
+        text.replace(at, folder.size(), words);
+    return text;
+}
+
 }  // namespace hairbake

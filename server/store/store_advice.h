@@ -9,4 +9,7 @@ namespace hairbake {
 /// Sentences without a full stop at the end. `error` is errno of a call for `path`, a file or folder of the store.
 std::string advice_for(const std::filesystem::path& path, int error);
 
+/// The text with "the store" for the path of the store's folder: clients need not know where it is.
+std::string without_path(std::string text, const std::filesystem::path& store);
+
 }  // namespace hairbake

@@ -132,7 +132,7 @@ class Closed(unittest.TestCase):
                             self.assertLess(time.monotonic(), end)
                             time.sleep(0.02)
                         self.assertIn("Permission denied", trouble)
-                        self.assertIn(f"`chmod u+rwX {closed}`", trouble)
+                        self.assertIn(f"`chmod u+rwX the store/{closed.relative_to(d.path / 'store')}`", trouble)  # for clients
                         self.assert_tells(d.ask("GET", "/readyz"), closed)
                     finally:
                         closed.chmod(right)

@@ -15,7 +15,7 @@ constexpr double first_pause_s = 0.1, longest_pause_s = 5;
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-bool is_busy(int status) { return status == 429 || status == 502 || status == 503 || status == 504; }
+bool is_busy(int status) { return status == 408 || status == 429 || status == 502 || status == 503 || status == 504; }
 
 /// The problem+json body, or an empty object.
 Json problem_of(const HttpAnswer& answer) {

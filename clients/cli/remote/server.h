@@ -48,7 +48,7 @@ public:
 
     /// One attempt.
     /// Throws the errors of HttpClient::send.
-    /// Throws ConnectionLost also when the server is busy or its proxy does not reach it (429, 502, 503, 504).
+    /// Throws ConnectionLost also when the server is busy or its proxy does not reach it (408, 429, 502, 503, 504).
     HttpAnswer once(const HttpCall& call);
     /// once() with retries until the patience is used up.
     HttpAnswer ask(const HttpCall& call);

@@ -13,7 +13,7 @@ from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional
 
 from ._errors import ConnectionLost, Refused, Unreachable, UsageError, plain
 
-BUSY = (429, 502, 503, 504)
+BUSY = (408, 429, 502, 503, 504)
 PIECE = 1 << 18
 FIRST_PAUSE_S, LONGEST_PAUSE_S = 0.1, 5.0
 TIMEOUT_S = 120.0  # without a received byte; the server computes the digest of a large upload before it answers
