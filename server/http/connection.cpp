@@ -71,6 +71,7 @@ bool Connection::fill(const std::function<bool()>& still_wanted, Clock::time_poi
         await(POLLIN, glance);
         count = receive(ahead_.data(), ahead_.size());
     }
+    is_closed_ = count == 0 || (count < 0 && !must_wait());
     ahead_begin_ = 0;
     ahead_end_ = static_cast<std::size_t>(std::max<ssize_t>(count, 0));
     return count > 0;

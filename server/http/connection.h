@@ -38,6 +38,8 @@ public:
     bool flush();
     /// Whether bytes were received that nobody has read.
     bool has_unread() const { return ahead_begin_ < ahead_end_; }
+    /// Whether await_head() or await_more() found that the client has closed.
+    bool is_closed() const { return is_closed_; }
     /// Whether bytes can be read, or written, before the patience ends.
     bool await_readable() const;
     bool await_writable() const;
@@ -58,7 +60,8 @@ private:
     const Clock::time_point head_end_;
     std::array<char, 4096> ahead_;                 ///< read buffer
     std::size_t ahead_begin_ = 0, ahead_end_ = 0;  ///< the unread bytes in it
-    std::string held_;                             ///< write buffer
+    bool is_closed_ = false;
+    std::string held_;  ///< write buffer
 };
 
 }  // namespace hairbake

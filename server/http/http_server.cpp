@@ -22,6 +22,7 @@
 #include "server/http/connection_threads.h"
 #include "server/http/lingering.h"
 #include "server/http/problem.h"
+#include "server/http/request_reader.h"
 #include "server/http/target.h"
 #include "server/jobs/service.h"
 
@@ -38,84 +39,33 @@ constexpr std::size_t most_lingering = 1000;  // connections
 constexpr std::size_t one_read = 6144;
 /// A body of up to this size takes no place (router.cpp).
 constexpr std::uint64_t short_body = 64 << 10;
-constexpr std::size_t longest_head = 64 << 10;  // as in nginx.conf
-const std::string any_path = "/";               // every request gets this path in the library; the routing is ours
+const std::string any_path = "/";  // every request gets this path in the library; the routing is ours
 
 /// Whether the current connection's request was not read to its end.
 thread_local bool body_left = false;
-/// Why the current connection's client was given up; empty while it is not.
-thread_local std::string given_up;
+/// Of the current connection.
+thread_local const RequestReader* current_reader = nullptr;
 
 /// Adapts a connection to the library.
 class ConnectionStream : public httplib::Stream {
 public:
-    /// `keeps_thread` tells whether the client may still let this thread wait for a head or a short body.
-    ConnectionStream(Connection& connection, const BodyPace::Limits& pace, std::function<bool()> keeps_thread)
-        : connection_(connection), limits_(pace), pace_(pace), keeps_thread_(std::move(keeps_thread)) {}
+    ConnectionStream(Connection& connection, RequestReader& reader) : connection_(connection), reader_(reader) {}
 
     bool is_readable() const override { return connection_.await_readable(); }
     bool is_writable() const override { return connection_.await_writable(); }
-    ssize_t read(char* data, std::size_t size) override {
-        if (!given_up.empty()) return -1;
-        if (in_head_) return read_head(data, size);
-        if (std::exchange(client_waits_, false) && !send_continue()) return -1;
-        return connection_.has_unread() ? connection_.read(data, size) : read_body(data, size);
-    }
-    /// `client_waits`: it sends its body only after a reply "100 Continue". The reply goes out when the body is read
-    /// for the first time, so a request that is refused by its head gets its refusal alone.
-    /// `is_short`: a body that has no place, so it must not keep a thread from others.
-    void end_head(bool client_waits, bool is_short) {
-        in_head_ = false;
-        client_waits_ = client_waits;
-        is_short_ = is_short;
-    }
-    bool in_head() const { return in_head_; }
+    ssize_t read(char* data, std::size_t size) override { return reader_.read(data, size); }
     /// What the library answers to a head that was given up is left out.
     ssize_t write(const char* data, std::size_t size) override {
-        return in_head_ && !given_up.empty() ? static_cast<ssize_t>(size) : connection_.write(data, size);
+        const bool is_left_out = reader_.in_head() && !reader_.given_up().empty();
+        return is_left_out ? static_cast<ssize_t>(size) : connection_.write(data, size);
     }
     void get_remote_ip_and_port(std::string&, int&) const override {}  // not used
     void get_local_ip_and_port(std::string&, int&) const override {}
     socket_t socket() const override { return connection_.socket(); }
 
 private:
-    bool send_continue() {
-        constexpr std::string_view reply = "HTTP/1.1 100 Continue\r\n\r\n";
-        return connection_.has_unread() || (connection_.write(reply.data(), reply.size()) >= 0 && connection_.flush());
-    }
-
-    ssize_t read_head(char* data, std::size_t size) {
-        if (++head_bytes_ > longest_head) return -1;  // the library reads a head byte by byte
-        if (connection_.await_head(keeps_thread_)) return connection_.read(data, size);
-        given_up = "the head of the request did not arrive within " +
-                   std::to_string(std::chrono::duration_cast<std::chrono::seconds>(patience.head).count()) +
-                   " s, or not at once while other connections waited: send it again, whole";
-        return -1;
-    }
-
-    ssize_t read_body(char* data, std::size_t size) {
-        const auto begin = std::chrono::steady_clock::now();
-        if (is_short_ && !connection_.await_more(keeps_thread_)) {
-            given_up = "the body did not arrive at once while other connections waited: send it again, whole";
-            return -1;
-        }
-        const ssize_t count = connection_.read(data, size);
-        if (count <= 0 || pace_.add(static_cast<std::uint64_t>(count), std::chrono::steady_clock::now() - begin))
-            return count;
-        given_up = "the body brought fewer than " + std::to_string(limits_.bytes_per_second) +
-                   " bytes a second, as the mean of " +
-                   std::to_string(std::chrono::duration_cast<std::chrono::seconds>(limits_.window).count()) +
-                   " s ([listen] body_rate, body_window_s): send it over a faster connection, or as a resumable upload "
-                   "(/v1/uploads), which keeps what arrived";
-        return -1;
-    }
-
     Connection& connection_;
-    const BodyPace::Limits limits_;
-    BodyPace pace_;
-    const std::function<bool()> keeps_thread_;
-    bool in_head_ = true, client_waits_ = false, is_short_ = false;
-    std::size_t head_bytes_ = 0;
+    RequestReader& reader_;
 };
 
 /// Calls `answer`; drops the connection when it throws, so that no exception ends a thread.
@@ -205,7 +155,7 @@ void read_body(const httplib::ContentReader& reader, const std::function<void(st
         }
     });
     if (failure) std::rethrow_exception(failure);
-    if (!given_up.empty()) throw Refusal(Refused::too_slow, given_up);
+    if (const std::string& slow = current_reader->given_up(); !slow.empty()) throw Refusal(Refused::too_slow, slow);
     if (!whole) throw Refusal(Refused::malformed, "the body ended early or its chunks are malformed");
     body_left = false;
 }
@@ -403,23 +353,24 @@ private:
         };
         if (!connection.await_head(keeps_thread)) return;
         body_left = true;  // until the head is parsed
-        given_up.clear();
         serve_request(connection, keeps_thread);
         connection.flush();
         if (body_left) lingering_.add(connection.release());
     }
 
     void serve_request(Connection& connection, const std::function<bool()>& keeps_thread) {
-        ConnectionStream stream(connection, pace_, keeps_thread);
+        RequestReader reader(connection, pace_, patience.head, keeps_thread);
+        ConnectionStream stream(connection, reader);
+        current_reader = &reader;
         bool closed = false;
-        process_request(stream, "", 0, "", 0, true, closed, [&stream](httplib::Request& request) {
-            stream.end_head(awaits_continue(request), is_local(request) && is_short(request));
+        process_request(stream, "", 0, "", 0, true, closed, [&reader](httplib::Request& request) {
+            reader.end_head(awaits_continue(request), is_local(request) && is_short(request));
             request.headers.erase("Expect");  // the library would reply before the request is checked
             request.path = any_path;          // the real path is in the target
             request.ranges.clear();           // we parse Range ourselves
         });
-        if (stream.in_head() && !given_up.empty())
-            write_reply(connection, "408 Request Timeout", problem(408, "too-slow", given_up));
+        if (reader.in_head() && !reader.given_up().empty())
+            write_reply(connection, "408 Request Timeout", problem(408, "too-slow", reader.given_up()));
     }
 
     HttpServer::Handler handler_;

@@ -1,4 +1,5 @@
 """Places for uploads, with nginx in front: one address cannot take those of others."""
+import contextlib
 import http.client
 import socket
 import threading
@@ -8,6 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 from front import TOKEN, Front, admin_token, statuses, trusting
 from harness import PATIENCE, Daemon, Reply, base64_text, sha256
+from rooms import eventually
 
 HELD = 60          # sockets of one address that do not end their bodies; nginx once had 48 places for uploads in all
 OTHER = "127.0.0.2"
@@ -148,7 +150,10 @@ class Places(unittest.TestCase):
     def test_slow_uploads_of_three_addresses_leave_places_to_a_fourth(self):
         """Fault: they held all 48 places. The third gets 8 places when no more than 8 are left."""
         held = [Held(self.front, "PUT", self.BLOB, "sender", count=16, address=f"127.0.0.{number}") for number in (1, 2, 3)]
-        with held[0], held[1], held[2]:
+        with contextlib.ExitStack() as stack:
+            for sockets, places in zip(held, (16, 32, 40)):
+                stack.enter_context(sockets)
+                eventually(lambda: len(self.daemon.leftovers()) == places)
             self.assertEqual(held[2].statuses(8), [429] * 8)
             self.check_passes("127.0.0.4", "slow uploads of three addresses", at_once=3)
 
