@@ -101,25 +101,34 @@ TracedHalves trace_reference(const StrandScene& scene, std::span<const std::uint
     return traced;
 }
 
-ErrorBar measure_error(const StrandScene& scene, std::span<const float> average, int count, std::uint64_t seed,
-                       Progress& progress) {
-    HAIRBAKE_ASSERT(count >= 0 && average.size() == scene.strands().vertex_count());
-    const auto drawn = draw_vertices(average.size(), static_cast<std::size_t>(count), seed);
+ErrorReference::ErrorReference(const StrandScene& scene, int count, std::uint64_t seed, Progress& progress)
+    : vertex_count_(scene.strands().vertex_count()) {
+    HAIRBAKE_ASSERT(count >= 0);
+    const auto drawn = draw_vertices(vertex_count_, static_cast<std::size_t>(count), seed);
     const std::vector<float> distance = distance_to_other_strands(scene.strands(), drawn, 1);
-    std::vector<std::uint32_t> outside, clear;  // clear: places in `outside`
     for (std::size_t k = 0; k < drawn.size(); ++k) {
         if (!(distance[k] >= 0)) continue;
-        if (distance[k] >= 1) clear.push_back(static_cast<std::uint32_t>(outside.size()));
-        outside.push_back(drawn[k]);
+        if (distance[k] >= 1) clear_.push_back(static_cast<std::uint32_t>(outside_.size()));
+        outside_.push_back(drawn[k]);
     }
-    const TracedHalves traced = trace_reference(scene, outside, progress);
-    const std::vector<float> baked = at(average, outside);
+    inside_strand_ = static_cast<std::uint32_t>(drawn.size() - outside_.size());
+    traced_ = trace_reference(scene, outside_, progress);
+}
+
+ErrorBar ErrorReference::compare(std::span<const float> average) const {
+    HAIRBAKE_ASSERT(average.size() == vertex_count_);
+    const std::vector<float> baked = at(average, outside_);
     ErrorBar bar;
-    bar.outside = error_statistics(baked, traced);
-    bar.clear = error_statistics(at(baked, clear), at(traced, clear));
-    bar.inside_strand = static_cast<std::uint32_t>(drawn.size() - outside.size());
+    bar.outside = error_statistics(baked, traced_);
+    bar.clear = error_statistics(at(baked, clear_), at(traced_, clear_));
+    bar.inside_strand = inside_strand_;
     bar.directions = reference_directions;
     return bar;
+}
+
+ErrorBar measure_error(const StrandScene& scene, std::span<const float> average, int count, std::uint64_t seed,
+                       Progress& progress) {
+    return ErrorReference(scene, count, seed, progress).compare(average);
 }
 
 }  // namespace hairbake

@@ -57,12 +57,29 @@ std::array<std::vector<Vec3d>, 2> make_reference_directions();
 /// Throws Error(cancelled).
 TracedHalves trace_reference(const StrandScene& scene, std::span<const std::uint32_t> vertices, Progress& progress);
 
-/// Traces some vertices in the reference directions and compares the bake with them.
-///
-/// average: [V], of the bake
-/// count:   vertices to draw; all vertices where the model has no more
-/// seed:    of the draw
-///
+/// The truth at a random sample of a model's vertices, to which several bakes of the model can be compared.
+class ErrorReference {
+public:
+    /// Traces the sample in the reference directions.
+    ///
+    /// count: vertices to draw; all vertices where the model has no more
+    /// seed:  of the draw
+    ///
+    /// Throws Error(cancelled).
+    ErrorReference(const StrandScene& scene, int count, std::uint64_t seed, Progress& progress);
+
+    /// average: [V], of a bake
+    ErrorBar compare(std::span<const float> average) const;
+
+private:
+    std::size_t vertex_count_;
+    std::vector<std::uint32_t> outside_;  // vertices
+    std::vector<std::uint32_t> clear_;    // places in outside_
+    std::uint32_t inside_strand_ = 0;
+    TracedHalves traced_;  // at outside_
+};
+
+/// ErrorReference for a single bake.
 /// Throws Error(cancelled).
 ErrorBar measure_error(const StrandScene& scene, std::span<const float> average, int count, std::uint64_t seed,
                        Progress& progress);

@@ -54,10 +54,11 @@ std::string voxels_of(const StrandGeometry& strands, double voxel_size) {
 void print_presets(const std::string& name, const StrandGeometry& strands, const TriangleMesh* occluder = nullptr) {
     Progress progress;
     const StrandScene scene(strands, progress, occluder);
+    const ErrorReference reference(scene, scored, 2, progress);
     for (const char* preset : {"draft", "default", "final"}) {
         Transmittance baked;
         const double taken = seconds([&] { baked = bake_as_asked(scene, occluder, settings_of(preset)); });
-        const ErrorBar bar = measure_error(scene, baked.average, scored, 2, progress);
+        const ErrorBar bar = reference.compare(baked.average);
         std::printf("| %s | %s | %s | %d | %.2f | %.4f | %.4f (%.4f to %.4f) | %+.4f | %.4f | %+.4f |\n", name.c_str(),
                     preset, voxels_of(strands, baked.voxel_size).c_str(), baked.directions, taken, bar.outside.noise,
                     bar.outside.rmse, bar.outside.rmse_ci95[0], bar.outside.rmse_ci95[1], bar.outside.bias,

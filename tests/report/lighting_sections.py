@@ -135,7 +135,8 @@ def decoupling(scene, page):
                  "times the transmittance of its direction. Nobody has published what that costs. Reference: the sum over "
                  "the environment with traced shadow rays inside (mode reference). RMSE over the mean, over the pixels "
                  "that show hair; the head hides light too. The rows leave one approximation out after another; "
-                 "directional transmittance is baked by the same sweep and put inside the sum.")
+                 "directional transmittance is baked by the same sweep and put inside the sum; effective transmittance "
+                 "is baked for the light itself.")
     table = {}
     # Bakes of hair alone may be lit by any sky.
     traced, _ = scene.bake("traced", head=True, transmittance__method="trace")
@@ -143,11 +144,13 @@ def decoupling(scene, page):
                                    transmittance__bent_cone="true")[0] for bands in (2, 3, 4)}
     for sky, label in SKIES.items():
         folder, _ = scene.bake(f"exact-{sky}", sky, head=True)
+        effective, _ = scene.bake(f"effective-{sky}", sky, head=True, effective_transmittance__enabled="true")
         black = ("--no-background", "--mesh", scene.mesh, "--mesh-albedo", "0,0,0")
         lit = ("--env", scene.sky(sky))
         reference, noise = reference_with_noise(scene, f"reference-{sky}", folder, *black, exposure=EXPOSURES[sky])
         variants = {"maps and A (mode baked)": (folder, ()), "every light, A (mode brute)": (folder, ("--mode", "brute")),
-                    "every light, traced A": (traced, ("--mode", "brute", *lit))}
+                    "every light, traced A": (traced, ("--mode", "brute", *lit)),
+                    "maps and effective transmittance": (effective, ("--mode", "effective"))}
         for bands, more in harmonics.items():
             variants[f"every light, SH transmittance of {bands} bands"] = (more, ("--mode", "directional", *lit))
         variants["every light, bent cone"] = (harmonics[2], ("--mode", "directional", "--directional",
