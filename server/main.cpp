@@ -87,6 +87,7 @@ int print_new_token() {
 
 /// Prints the table of routes; the service is made on an empty store and answers nothing.
 int print_routes() {
+    spdlog::set_level(spdlog::level::off);  // of the service on a store that is gone at the end
     char folder[] = "/tmp/hairbaked-routes-XXXXXX";
     if (!::mkdtemp(folder)) throw Error(ErrorKind::internal, "no folder can be made in /tmp");
     struct Remove {

@@ -8,6 +8,7 @@
 
 #include "core/base/digest.h"
 #include "core/base/error.h"
+#include "core/base/short_text.h"
 #include "server/http/problem.h"
 #include "server/jobs/service.h"
 
@@ -17,6 +18,16 @@ namespace {
 constexpr double session_s = 12 * 3600;
 constexpr std::size_t most_sessions = 1'000, longest_token = 200;  // sessions of one token
 const std::string cookie_name = "hairbake_session";
+
+constexpr std::size_t longest_shown = 200;  // of a header
+
+std::string quoted(const std::string& text) { return '"' + shortened(escaped(text), longest_shown) + '"'; }
+
+std::string list_of(const std::set<Scope>& scopes) {
+    std::string list;
+    for (const Scope scope : scopes) list += (list.empty() ? "" : ", ") + name_of(scope);
+    return list;
+}
 
 [[noreturn]] void deny(int status, const std::string& slug, const std::string& words) {
     HttpReply reply = problem(status, slug, words);
@@ -59,6 +70,16 @@ std::optional<std::string> cookie_of(const HttpRequest& request) {
     return std::nullopt;
 }
 
+[[noreturn]] void deny_without_token(const HttpRequest& request) {
+    const char* const found = request.header("Authorization") ? "the header Authorization has no valid token"
+                              : cookie_of(request)            ? "the session has ended"
+                                                              : "the request has no token";
+    deny(401, "unauthorized",
+         std::string(found) +
+             "; needed is Authorization: Bearer TOKEN, with a token ([[token]]) of the daemon's "
+             "configuration that has not expired");
+}
+
 }  // namespace
 
 std::optional<std::size_t> Access::find_token(const std::string& text) const {
@@ -88,36 +109,51 @@ std::optional<std::size_t> Access::token_of(const HttpRequest& request) {
 /// A browser sends the page's origin with every request that changes something; it must be this service.
 void Access::check_origin(const HttpRequest& request) const {
     const auto origin = request.header("Origin");
-    if (origin && host_of(*origin) != request.header("Host").value_or(""))
-        deny(403, "foreign-origin", "the request comes from a page of another site");
+    const std::string host = request.header("Host").value_or("");
+    if (origin && host_of(*origin) != host)
+        deny(403, "foreign-origin",
+             "the header Origin is " + quoted(*origin) + ", a page of another site; allowed is the address in Host, " +
+                 quoted(host) +
+                 ". Use the service's own page, or a program that sends no Origin. A proxy must pass Host on as it "
+                 "came (proxy_set_header Host $http_host)");
 }
 
 void Access::check(HttpRequest& request, Scope scope) {
     if (tokens_.empty() && is_forwarded(request))
         deny(403, "no-tokens",
-             "the daemon has no tokens in its configuration, so it serves its own machine alone and refuses "
-             "what a proxy forwards; `hairbaked token new` makes a token");
+             "a proxy forwarded the request (it has the header X-Forwarded-For), and a daemon without tokens in its "
+             "configuration answers its own machine alone. Ask the daemon directly, or configure a token ([[token]]): "
+             "`hairbaked token new` makes one");
     if (scope == Scope::open) return;
     if (tokens_.empty()) {
         if (!is_loopback(request.header("Host").value_or("")))
-            deny(403, "no-tokens", "without tokens in its configuration the service answers this machine alone");
+            deny(403, "no-tokens",
+                 "the header Host is " + quoted(request.header("Host").value_or("")) +
+                     "; allowed are localhost, 127.0.0.1 and [::1], with any port: a daemon without tokens in its "
+                     "configuration answers its own machine alone. Ask by one of these names, or configure a token "
+                     "([[token]]): `hairbaked token new` makes one");
         check_origin(request);
         request.caller = "local";
         return;
     }
     const auto token = token_of(request);
-    if (!token) deny(401, "unauthorized", "a valid token is needed: Authorization: Bearer ...");
+    if (!token) deny_without_token(request);
     const std::set<Scope>& scopes = tokens_[*token].scopes;
     if (!scopes.count(scope) && !scopes.count(Scope::admin))
-        deny(403, "forbidden", "the token lacks the scope " + name_of(scope));
+        deny(403, "forbidden",
+             "the token " + quoted(tokens_[*token].name) + " has the scopes " + list_of(scopes) + "; needed is " +
+                 name_of(scope) +
+                 " or admin: use another token, or add the scope to this [[token]] of the daemon's "
+                 "configuration");
     request.caller = tokens_[*token].name;
 }
 
 std::string Access::open_session(const HttpRequest& request) {
-    if (tokens_.empty()) deny(403, "no-tokens", "the service has no tokens: no session is needed");
+    if (tokens_.empty())
+        deny(403, "no-tokens", "the daemon has no tokens in its configuration ([[token]]): no session is needed");
     const auto bearer = bearer_of(request);
     const auto token = bearer ? find_token(*bearer) : std::nullopt;
-    if (!token) deny(401, "unauthorized", "a valid token is needed: Authorization: Bearer ...");
+    if (!token) deny_without_token(request);
     const std::string cookie = new_token();
     const std::lock_guard lock(mutex_);
     std::erase_if(sessions_, [time = now()](const auto& session) { return session.second.expires < time; });

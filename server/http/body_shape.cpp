@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/json_reason.h"
 #include "core/base/short_text.h"
 #include "server/http/body_place.h"
 #include "server/http/utf8.h"
@@ -111,7 +112,9 @@ public:
 
     bool parse_error(std::size_t position, const std::string&, const Json::exception& error) override {
         if (position > bytes_) return false;  // the cut, and no error before it
-        throw Refusal(Refused::malformed, "the body is not JSON: " + shortened(error.what(), longest_error));
+        next_place().refuse("is not JSON: " + shortened(json_reason(error), longest_error) + " (byte " +
+                                std::to_string(position) + " of the body)",
+                            Refused::malformed);
     }
 
     /// The place of the value before which the text was cut. Before a name it is that of the object.

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/short_text.h"
 #include "server/http/connection.h"
 #include "server/http/connection_threads.h"
 #include "server/http/lingering.h"
@@ -39,6 +40,7 @@ constexpr std::size_t most_lingering = 1000;  // connections
 constexpr std::size_t one_read = 6144;
 /// A body of up to this size takes no place (router.cpp).
 constexpr std::uint64_t short_body = 64 << 10;
+constexpr std::size_t longest_shown = 100;  // of a header or an address in a message
 const std::string any_path = "/";  // every request gets this path in the library; the routing is ours
 
 /// Whether the current connection's request was not read to its end.
@@ -119,9 +121,11 @@ bool is_short(const httplib::Request& request) {
 /// The reply to a request with a malformed head. Nothing when the head is well-formed.
 std::optional<HttpReply> wrong_head(const httplib::Request& request, const std::optional<Target>& target) {
     const auto refuse = [](const std::string& words) { return problem(400, "malformed", words); };
+    const auto shown = [](const std::string& text) { return '"' + shortened(escaped(text), longest_shown) + '"'; };
     for (const auto& [name, value] : request.headers)
         if (has_control_characters(name) || has_control_characters(value))
-            return refuse("a header has a control character");
+            return refuse("the header " + shown(name) + " has a control character: " + shown(value) +
+                          "; allowed are printable characters and tabs");
     const std::size_t lengths = request.get_header_value_count("Content-Length");
     const std::size_t codings = request.get_header_value_count("Transfer-Encoding");
     if (lengths + codings > 1) return refuse("the body's length is given more than once");
@@ -138,7 +142,11 @@ std::optional<HttpReply> wrong_head(const httplib::Request& request, const std::
         return problem(415, "unsupported", "compressed bodies are not accepted", "Content-Encoding");
     if (request.get_header_value("Content-Type").starts_with("multipart/"))
         return problem(415, "unsupported", "a body is one file or one JSON object", "Content-Type");
-    if (!target) return refuse("the address is not a plain path");
+    if (!target)
+        return refuse(
+            "the address " + shown(request.target) +
+            " is not a plain path; allowed is a path that begins with / and has no empty segment, no . or .., no "
+            "encoded / and no control characters");
     return std::nullopt;
 }
 

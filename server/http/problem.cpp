@@ -27,6 +27,8 @@ const char* title_of(int status) {
             return "Method not allowed";
         case 409:
             return "Conflict";
+        case 410:
+            return "Gone";
         case 411:
             return "Length required";
         case 412:
@@ -56,6 +58,10 @@ const char* title_of(int status) {
     }
 }
 
+std::string retry_after(const Refusal& refusal, int usual_s) {
+    return std::to_string(refusal.retry_s() > 0 ? refusal.retry_s() : usual_s);
+}
+
 HttpReply with_needed_by(HttpReply reply, const std::string& list) {
     if (list.empty()) return reply;
     Json body = Json::parse(reply.body);
@@ -72,18 +78,21 @@ HttpReply problem_of(const Refusal& refusal) {
             return problem(422, "unprocessable", refusal.what(), refusal.field(), refusal.pointer());
         case Refused::not_found:
             return problem(404, "not-found", refusal.what(), refusal.field());
+        case Refused::gone:
+            return problem(410, "gone", refusal.what(), refusal.field());
         case Refused::conflict:
             return with_needed_by(problem(409, "conflict", refusal.what(), refusal.field()), refusal.needed_by());
         case Refused::too_large:
             return problem(413, "too-large", refusal.what(), refusal.field());
         case Refused::too_many:
-            return problem(429, "too-many", refusal.what(), refusal.field()).with("Retry-After", "60");
+            return problem(429, "too-many", refusal.what(), refusal.field())
+                .with("Retry-After", retry_after(refusal, 60));
         case Refused::too_slow:
             return problem(408, "too-slow", refusal.what(), refusal.field());
         case Refused::full:
             return problem(507, "full", refusal.what(), refusal.field());
         default:
-            return problem(503, "busy", refusal.what(), refusal.field()).with("Retry-After", "5");
+            return problem(503, "busy", refusal.what(), refusal.field()).with("Retry-After", retry_after(refusal, 5));
     }
 }
 

@@ -113,10 +113,13 @@ HttpReply Router::answer_or_throw(HttpRequest& request) const {
     if (std::optional<HttpReply> wrong = wrong_body(request, *route)) return *wrong;
     const auto place = needs_place(request, *route) ? places_.take(request.header("X-Forwarded-For").value_or(""))
                                                     : std::optional<BodyPlaces::Place>();
-    if (needs_place(request, *route) && !place)
-        return problem(429, "too-many",
-                       places_.refusal(request.header("X-Forwarded-For").value_or("")) + ": try again in 1 s")
-            .with("Retry-After", "1");
+    const std::string address = request.header("X-Forwarded-For").value_or("");
+    if (needs_place(request, *route) && !place) {
+        const std::string wait = std::to_string(times_->seconds_until_one_ends(address, PlaceTimes::Clock::now()));
+        return problem(429, "too-many", places_.refusal(address) + ": try again in " + wait + " s")
+            .with("Retry-After", wait);
+    }
+    const auto time = place ? times_->begin(address) : std::optional<PlaceTimes::Begun>();
     // The length of the body is limited here, for all handlers.
     const auto read = request.read_body;
     request.read_body = [read,

@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "server/http/access.h"
 #include "server/http/body_places.h"
 #include "server/http/message.h"
+#include "server/http/place_times.h"
 
 namespace hairbake {
 
@@ -41,6 +43,7 @@ private:
     std::vector<Route> routes_;
     Access& access_;
     BodyPlaces& places_;
+    std::unique_ptr<PlaceTimes> times_ = std::make_unique<PlaceTimes>();
 };
 
 }  // namespace hairbake

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/json_reason.h"
 #include "core/base/short_text.h"
 #include "core/request/request_json.h"
 #include "core/request/stages.h"
@@ -23,7 +24,7 @@ Json parse(const std::string& body) {
     try {
         return Json::parse(body);
     } catch (const Json::exception& error) {
-        throw Refusal(Refused::malformed, std::string("the body is not JSON: ") + error.what());
+        throw Refusal(Refused::malformed, "the body is not JSON: " + json_reason(error));
     }
 }
 

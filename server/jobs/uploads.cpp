@@ -5,7 +5,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cmath>
 
 #include "core/base/digest.h"
 #include "core/base/short_text.h"
@@ -21,6 +23,8 @@
 namespace hairbake {
 namespace fs = std::filesystem;
 namespace {
+
+constexpr double longest_retry_s = 60;
 
 [[noreturn]] void refuse_unknown(const std::string& upload) {
     throw Refusal(Refused::not_found, "there is no upload " + shortened(upload, 64));
@@ -175,18 +179,25 @@ void Uploads::check(std::uint64_t bytes, const std::string& sha256, const std::s
                       "Upload-Metadata lacks sha256: the digest of the whole file as 64 hexadecimal digits",
                       "Upload-Metadata");
     std::int64_t open = 0;
+    double first_end = 0;
     std::uint64_t own = 0, all = 0;
     database_.read([&](Sql& sql) {
-        const auto mine = sql.rows("SELECT count(*), sum(bytes) FROM uploads WHERE token = ?", {token}).at(0);
+        const auto mine =
+            sql.rows("SELECT count(*), sum(bytes), min(expires) FROM uploads WHERE token = ?", {token}).at(0);
         open = mine.integer(0);
+        first_end = mine.number(2);
         own = static_cast<std::uint64_t>(mine.integer(1));
         all = static_cast<std::uint64_t>(sql.rows("SELECT sum(bytes) FROM uploads").at(0).integer(0));
     });
     const auto refuse = [&](Refused why, const std::string& found, std::uint64_t allowed, const std::string& unit) {
-        const std::string when = why == Refused::too_many ? ", and try again in 60 s" : "";
+        // Any of them may end at any time, and the first one ends by itself then.
+        const int wait = static_cast<int>(std::clamp(std::ceil(first_end - now()), 1.0, longest_retry_s));
+        const std::string when =
+            why == Refused::too_many ? ", and try again in " + std::to_string(wait) + " s" : std::string();
         throw Refusal(why, found + "; allowed are " + std::to_string(allowed) + unit + ": finish some or delete them" +
                                when + "; one that receives nothing for " +
-                               std::to_string(static_cast<std::int64_t>(limits_.lifetime_s)) + " s ends by itself");
+                               std::to_string(static_cast<std::int64_t>(limits_.lifetime_s)) + " s ends by itself")
+            .retry_after(wait);
     };
     if (open >= limits_.most_open)
         refuse(Refused::too_many, "there are " + std::to_string(open) + " unfinished uploads of this token",
@@ -310,6 +321,7 @@ void Uploads::make_blob(const std::string& id, const std::string& digest) {
 
 /// Removes the upload's row and file. `reason` is for the log.
 void Uploads::forget(const std::string& id, std::string_view reason) {
+    require_removable(folder_ / id);
     try {
         database_.write([&](Sql& sql) { sql.run("DELETE FROM uploads WHERE id = ?", {id}); });
     } catch (const Error& error) {

@@ -184,8 +184,10 @@ void BlobStore::remove(const Choice& choose, std::string_view reason) {
         forget([&](Sql& sql) {
             digests.clear();
             digests = choose(sql);
-            for (const std::string& digest : digests)
+            for (const std::string& digest : digests) {
+                require_removable(path_of(digest));
                 sql.run("INSERT OR REPLACE INTO removals VALUES(?, ?)", {digest, now()});
+            }
             return digests;
         });
     } catch (const Error& error) {

@@ -1,17 +1,41 @@
 #include "server/store/removal_log.h"
 
+#include <fcntl.h>
 #include <spdlog/spdlog.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <system_error>
+
+#include "core/base/error.h"
+#include "server/store/file_system.h"
+#include "server/store/refusal.h"
 
 namespace hairbake {
 namespace fs = std::filesystem;
 
+void require_removable(const fs::path& file) try {
+    struct stat facts {};
+    if (::lstat(file.c_str(), &facts) != 0) {
+        if (errno == ENOENT || errno == ENOTDIR) return;
+        throw_store_error(file, errno);
+    }
+    if (::faccessat(AT_FDCWD, file.parent_path().c_str(), W_OK | X_OK, AT_EACCESS) != 0) throw_store_error(file, errno);
+} catch (const Error& error) {  // no full disk, for which a deletion has a reserve (disk_reserve.h)
+    throw Refusal(Refused::full, error.what());
+}
+
 void remove_counted(const fs::path& file, FileCount& count) {
     std::error_code unknown;
     const std::uintmax_t bytes = fs::file_size(file, unknown);
-    if (::unlink(file.c_str()) != 0) return;
+    if (::unlink(file.c_str()) != 0) {
+        const int error = errno;
+        if (error != ENOENT && error != EISDIR)
+            spdlog::error("{} is not needed any more and cannot be removed: {}", file.string(),
+                          std::generic_category().message(error));
+        return;
+    }
     ++count.files;
     count.bytes += unknown ? 0 : bytes;
 }

@@ -12,7 +12,11 @@ struct FileCount {
     std::uint64_t files = 0, bytes = 0;
 };
 
-/// Unlinks a file and adds it to `count`. A file that cannot be removed stays.
+/// Call it before the record of a file is removed, so that no file stays without one.
+/// Throws Refusal(full) with the reason when the file is there and its folder cannot be written.
+void require_removable(const std::filesystem::path& file);
+
+/// Unlinks a file and adds it to `count`. A file that cannot be removed stays, with a line in the log.
 void remove_counted(const std::filesystem::path& file, FileCount& count);
 
 /// Removes a file, or a folder with all that is in it, and adds its files to `count`.

@@ -17,6 +17,7 @@
 #include <thread>
 
 #include "core/base/error_kind_names.h"
+#include "core/base/json_reason.h"
 #include "server/worker/limits.h"
 #include "server/worker/shortage.h"
 #include "server/worker/task.h"
@@ -113,10 +114,19 @@ bool is_of_machine(const Error& error) {
     return may_be && hairbake::machine_is_short_of_threads();
 }
 
+/// What to do about an error of the system's that a person can mend; empty for all others.
+std::string remedy_for(int error) {
+    if (error == EFBIG)
+        return ". A limit of the size of files holds for this process (`ulimit -f`, LimitFSIZE= of its unit), or the "
+               "file system has one: raise it";
+    if (error == ENOSPC || error == EDQUOT) return ". Make room on the disk of the store";
+    return {};
+}
+
 int fail(const Error& error, const std::string& task, const fs::path& folder) {
     say({{"error",
           {{"kind", hairbake::name_of(error.kind())},
-           {"message", hairbake::with_names(error.what(), task, folder)},
+           {"message", hairbake::with_names(error.what(), task, folder) + remedy_for(error.system_error())},
            {"field", error.field()},
            {"machine", is_of_machine(error)}}}});
     return 1;
@@ -144,7 +154,7 @@ int work(const std::string& task, const fs::path& folder, hairbake::BakeProgress
     } catch (const std::bad_alloc&) {
         return fail(Error(ErrorKind::out_of_resources, "the worker's memory limit was reached"), task, folder);
     } catch (const std::exception& error) {
-        return fail(Error(ErrorKind::internal, error.what()), task, folder);
+        return fail(Error(ErrorKind::internal, hairbake::json_reason(error)), task, folder);
     }
 }
 

@@ -72,7 +72,8 @@ std::string run_task(const std::string& text, const fs::path& folder, BakeProgre
 std::string with_names(std::string message, const std::string& text, const fs::path& folder) {
     const Json task = Json::parse(text, nullptr, false);
     Json names = task.is_object() ? task.value("names", Json::object()) : Json::object();
-    names[folder.string()] = "the store";
+    names[(folder / "result").string() + "/"] = "the result's file ";  // before the folder, which it contains
+    names[folder.string()] = "the work folder";
     for (const auto& [path, name] : names.items())
         for (std::size_t at = 0; (at = message.find(path, at)) != std::string::npos;) {
             const std::string words = name.get<std::string>();

@@ -15,7 +15,8 @@
 //                                                     versions_text() as "versions" for trial
 //   {"error": {"kind": "bad_input", "message": "...", "field": "", "machine": false}}   the last word of a failure
 // "machine" is true when the machine is at fault and not the input: a call of the system failed, as on a full disk.
-// In messages every path of `names` is replaced by the name that the client knows, and the work folder by "the store".
+// In messages every path of `names` is replaced by the name that the client knows, and the work folder by "the work
+// folder", with its result by "the result's file ".
 #pragma once
 
 #include <filesystem>

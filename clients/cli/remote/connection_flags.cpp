@@ -11,6 +11,7 @@
 #include "clients/cli/messages.h"
 #include "clients/cli/option_values.h"
 #include "clients/cli/signal_watch.h"
+#include "core/base/json_reason.h"
 
 namespace hairbake {
 namespace {
@@ -92,8 +93,7 @@ void run_phase(const ConnectionFlags& flags, const ServerOptions& options, const
     try {
         work(server);
     } catch (const nlohmann::json::exception& surprise) {
-        throw RemoteError(ExitCode::refused,
-                          std::string("the server's answer has an unexpected form: ") + surprise.what());
+        throw RemoteError(ExitCode::refused, "the server's answer has an unexpected form: " + json_reason(surprise));
     }
 }
 
