@@ -3,9 +3,12 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error_kind_names.h"
+#include "core/base/short_text.h"
 #include "server/jobs/stage_plan.h"
+#include "server/jobs/time_text.h"
 #include "server/store/blob_store.h"
 #include "server/store/database.h"
+#include "server/store/refusal.h"
 
 namespace hairbake {
 namespace {
@@ -67,7 +70,25 @@ bool is_needed(Sql& sql, const std::string& stage) {
                 .empty();
 }
 
+UnknownBake describe_unknown_bake(Sql& sql, const std::string& id) {
+    const auto rows = sql.rows("SELECT state, time FROM forgotten_bakes WHERE id = ?", {id});
+    if (rows.empty()) return {false, "there is no bake " + shortened(id, 64)};
+    const std::string when = " was removed at " + time_text(rows[0].number(1));
+    if (rows[0].text(0) == name_of(JobState::done))
+        return {true, "the result of bake " + id + when +
+                          " to make room in the store: results that were not used for the longest time go first. The "
+                          "same request sent again bakes it anew ([store] budget_mb says how much the store keeps)"};
+    return {true, "bake " + id + " ended as " + rows[0].text(0) + ", and its record" + when +
+                      ". The same request sent again bakes it anew"};
+}
+
+void refuse_unknown_bake(Sql& sql, const std::string& id) {
+    const UnknownBake unknown = describe_unknown_bake(sql, id);
+    throw Refusal(unknown.was_there ? Refused::gone : Refused::not_found, unknown.words);
+}
+
 void insert_bake(Sql& sql, const BakePlan& plan) {
+    sql.run("DELETE FROM forgotten_bakes WHERE id = ?", {plan.id});
     sql.run(
         "INSERT INTO bakes(id, state, request, names, hair, environment, priority, attempts, created) "
         "VALUES(?, 'queued', ?, ?, ?, ?, ?, 1, ?)",

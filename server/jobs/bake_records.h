@@ -36,6 +36,17 @@ std::vector<std::string> live_or_done_bakes_of(Sql& sql, const std::string& stag
 /// Whether a live bake has the stage.
 bool is_needed(Sql& sql, const std::string& stage);
 
+/// Why there is no bake `id`: its result was removed to make room, its record was removed, or there never was one.
+struct UnknownBake {
+    bool was_there = false;
+    std::string words;
+};
+UnknownBake describe_unknown_bake(Sql& sql, const std::string& id);
+
+/// Throws Refusal(gone) for a bake that was there.
+/// Throws Refusal(not_found) for another one.
+[[noreturn]] void refuse_unknown_bake(Sql& sql, const std::string& id);
+
 /// Inserts the bake, queued, with its stages, whose rows exist.
 void insert_bake(Sql& sql, const BakePlan& plan);
 

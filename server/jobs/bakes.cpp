@@ -7,6 +7,7 @@
 #include "core/base/digest.h"
 #include "core/base/short_text.h"
 #include "server/jobs/bake_manifest.h"
+#include "server/jobs/bake_records.h"
 #include "server/jobs/page.h"
 #include "server/jobs/queue.h"
 #include "server/jobs/time_text.h"
@@ -32,10 +33,6 @@ constexpr const char* stage_rows =
     "m.stage WHERE m.bake = ? ORDER BY m.seq";
 
 std::vector<SqlRow> stages_of(Sql& sql, const SqlRow& bake) { return sql.rows(stage_rows, {bake.integer(2)}); }
-
-[[noreturn]] void refuse_unknown(const std::string& id) {
-    throw Refusal(Refused::not_found, "there is no bake " + shortened(id, 64));
-}
 
 /// One stage of a bake.
 struct StageView {
@@ -167,7 +164,7 @@ BakeView Bakes::get(const std::string& id) {
     database_.read([&](Sql& sql) {
         version = database_.version_read();
         const auto rows = sql.rows(std::string(all_columns) + "WHERE id = ?", {id});
-        if (rows.empty()) refuse_unknown(id);
+        if (rows.empty()) refuse_unknown_bake(sql, id);
         answer.json = full_view(sql, queue_, rows[0]).dump();
         done = rows[0].text(1) == "done";
     });
@@ -195,7 +192,7 @@ BakeFile Bakes::file(const std::string& id, const std::string& name) {
     BakeFile file{name, {}, {}, {}};
     database_.read([&](Sql& sql) {
         const auto rows = sql.rows(std::string(all_columns) + "WHERE id = ?", {id});
-        if (rows.empty()) refuse_unknown(id);
+        if (rows.empty()) refuse_unknown_bake(sql, id);
         const SqlRow& bake = rows[0];
         if (bake.text(1) != "done")
             throw Refusal(Refused::conflict, "the bake is " + bake.text(1) + "; only a done one has files");

@@ -38,11 +38,11 @@ class Bakes {
 public:
     Bakes(Database& database, Queue& queue) : database_(database), queue_(queue) {}
 
-    /// Throws Refusal(not_found).
+    /// Throws Refusal(not_found, or gone for a bake that was removed).
     BakeView get(const std::string& id);
     /// {"bakes": [...], "next": cursor or null}, newest first, without their requests.
     std::string list(const BakeFilter& filter);
-    /// Throws Refusal(not_found).
+    /// Throws Refusal(not_found, or gone for a bake that was removed).
     /// Throws Refusal(conflict) while the bake is not done.
     BakeFile file(const std::string& id, const std::string& name);
 

@@ -100,8 +100,10 @@ std::vector<std::int64_t> affected(Sql& sql, const Json& body) {
     FoundBakes found;
     if (body.contains("bakes")) {
         for (const std::string& id : strings(body, "bakes"))
-            if (!found.add(sql.rows(select + "id = ?", {id})))
-                refuse("bakes", "there is no bake " + shortened(id, 64) + " with a hair model");
+            if (!found.add(sql.rows(select + "id = ?", {id}))) {
+                const UnknownBake unknown = describe_unknown_bake(sql, id);
+                refuse("bakes", unknown.words + (unknown.was_there ? "" : " with a hair model"));
+            }
     } else if (body.contains("models")) {
         for (const std::string& model : strings(body, "models")) {
             const std::string digest = named_digest(sql, model, "model", "models");
@@ -235,7 +237,10 @@ std::string Batches::get(const std::string& id) {
     database_.read([&](Sql& sql) {
         version = database_.version_read();
         const auto rows = sql.rows("SELECT id, request, created FROM batches WHERE id = ?", {id});
-        if (rows.empty()) throw Refusal(Refused::not_found, "there is no batch " + shortened(id, 64));
+        if (rows.empty())
+            throw Refusal(Refused::not_found, "there is no batch " + shortened(id, 64) +
+                                                  "; one whose bakes have all ended is forgotten some time later "
+                                                  "([store] keep_failed_s)");
         answer = {{"id", id}, {"created", time_text(rows[0].number(2))}};
         std::int64_t total = 0;
         Json counts = Json::object();

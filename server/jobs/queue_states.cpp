@@ -1,7 +1,6 @@
 // How the states of stages and bakes follow from each other.
 #include <algorithm>
 
-#include "core/base/short_text.h"
 #include "server/jobs/queue.h"
 #include "server/store/blob_store.h"
 #include "server/store/database.h"
@@ -55,7 +54,7 @@ void Queue::release_stage(Sql& sql, const std::string& stage) {
 void Queue::cancel(const std::string& bake) {
     database_.write([&](Sql& sql) {
         const std::optional<JobState> state = state_of_bake(sql, bake);
-        if (!state) throw Refusal(Refused::not_found, "there is no bake " + shortened(bake, 64));
+        if (!state) refuse_unknown_bake(sql, bake);
         if (!is_live(*state))
             throw Refusal(Refused::conflict, std::string("the bake is ") + name_of(*state) +
                                                  "; only a queued or running one can be cancelled");
@@ -75,9 +74,11 @@ void Queue::requeue_stage(Sql& sql, const std::string& stage) {
     sql.run("DELETE FROM stage_files WHERE stage = ?", {stage});
     const StageError error{
         ErrorKind::bad_input, "a stored result was lost, and so was an input of it; send the input again", {}};
-    sql.run("UPDATE stages SET state = ?, manifest = NULL, attempts = 0, crashes = 0, error = ? WHERE key = ?",
-            {name_of(inputs_stored ? JobState::queued : JobState::failed),
-             inputs_stored ? SqlValue(nullptr) : SqlValue(error_json(error)), stage});
+    sql.run(
+        "UPDATE stages SET state = ?, manifest = NULL, attempts = 0, crashes = 0, deaths = NULL, ends = 0, error = ? "
+        "WHERE key = ?",
+        {name_of(inputs_stored ? JobState::queued : JobState::failed),
+         inputs_stored ? SqlValue(nullptr) : SqlValue(error_json(error)), stage});
     for (const std::string& bake : live_or_done_bakes_of(sql, stage)) {
         sql.run("UPDATE bakes SET state = 'queued', finished = NULL WHERE id = ?", {bake});
         settle_bake(sql, bake);

@@ -6,6 +6,8 @@
 
 #include "server/store/blob_store.h"
 #include "server/store/database.h"
+#include "server/store/pruning.h"
+#include "server/store/removal_log.h"
 
 namespace hairbake {
 namespace {
@@ -42,16 +44,10 @@ std::vector<std::string> oldest_stages(Sql& sql) {
 
 /// Forgets a stage and its bakes; returns its blobs that nothing else needs.
 std::vector<std::string> forget_stage(Sql& sql, const std::string& key) {
-    std::vector<std::string> blobs = texts(sql.rows(
-        "SELECT DISTINCT sha256 FROM stage_files f JOIN blobs bl USING(sha256) WHERE f.stage = ? AND NOT EXISTS("
-        "SELECT 1 FROM stage_files o WHERE o.sha256 = f.sha256 AND o.stage <> f.stage) AND NOT " +
-            is_needed,
-        {key}));
-    const std::string ids = "(SELECT b.id FROM bake_stages m JOIN bakes b ON b.seq = m.bake WHERE m.stage = ?)";
-    sql.run("DELETE FROM batch_bakes WHERE bake IN " + ids, {key});
-    sql.run("DELETE FROM bake_names WHERE bake IN " + ids, {key});
-    sql.run("DELETE FROM bakes WHERE seq IN (SELECT bake FROM bake_stages WHERE stage = ?)", {key});
-    sql.run("DELETE FROM bake_stages WHERE bake IN (SELECT bake FROM bake_stages WHERE stage = ?)", {key});
+    std::vector<std::string> blobs = blobs_of_stage_alone(sql, key);
+    forget_bakes(sql, sql.rows("SELECT b.seq, b.id, b.state FROM bake_stages m JOIN bakes b ON b.seq = m.bake WHERE "
+                               "m.stage = ?",
+                               {key}));
     sql.run("DELETE FROM stage_files WHERE stage = ?", {key});
     sql.run("DELETE FROM stage_inputs WHERE stage = ?", {key});
     sql.run("DELETE FROM stages WHERE key = ?", {key});
@@ -81,6 +77,7 @@ Forgotten forget_oldest(Sql& sql, BlobStore& store, const std::vector<std::strin
     Forgotten forgotten;
     for (std::size_t i = 0; i < ranked.size() && forgotten.bytes < wanted; ++i)
         for (std::string& digest : forget(sql, ranked[i])) {
+            require_removable(store.path_of(digest));  // else its rows stay, too
             forgotten.bytes += store.size_of(digest).value_or(0);
             forgotten.blobs.push_back(std::move(digest));
         }
@@ -110,6 +107,14 @@ bool is_unneeded(Sql& sql, const std::string& digest) {
                        is_needed,
                    {digest})
                 .empty();
+}
+
+std::vector<std::string> blobs_of_stage_alone(Sql& sql, const std::string& stage) {
+    return texts(sql.rows(
+        "SELECT DISTINCT sha256 FROM stage_files f JOIN blobs bl USING(sha256) WHERE f.stage = ? AND NOT EXISTS("
+        "SELECT 1 FROM stage_files o WHERE o.sha256 = f.sha256 AND o.stage <> f.stage) AND NOT " +
+            is_needed,
+        {stage}));
 }
 
 std::uint64_t evictable_bytes(Database& database, std::uint64_t enough) {

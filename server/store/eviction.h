@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace hairbake {
 
@@ -15,6 +16,9 @@ class Sql;
 
 /// Whether no client sent the blob and nothing refers to it.
 bool is_unneeded(Sql& sql, const std::string& digest);
+
+/// Digests of the result's blobs that nothing else needs.
+std::vector<std::string> blobs_of_stage_alone(Sql& sql, const std::string& stage);
 
 /// Bytes of the blobs that evict() could remove. Stops to count at `enough`, and then returns at least that. A result
 /// below `enough` may be too large.

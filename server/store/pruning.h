@@ -1,13 +1,19 @@
 // Forgets old records of work that ended without a result.
 #pragma once
 
-namespace hairbake {
+#include <vector>
 
-class Database;
+#include "server/store/database.h"
+
+namespace hairbake {
 
 /// Removes failed and cancelled bakes that ended before `time` (seconds since 1970), failed and cancelled stages that
 /// no bake has, and batches made before `time` whose bakes have all ended. Done bakes stay until their results are
-/// evicted (eviction.h); versions of names stay.
+/// evicted (eviction.h); versions of names stay. Notes of forgotten bakes stay as long again, 100,000 of them at most.
 void prune(Database& database, double time);
+
+/// Removes the rows of bakes (columns seq, id, state) and notes their ids: a client that asks for one learns that there
+/// was one. Their stages stay.
+void forget_bakes(Sql& sql, const std::vector<SqlRow>& bakes);
 
 }  // namespace hairbake

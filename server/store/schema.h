@@ -6,7 +6,7 @@
 
 namespace hairbake {
 
-inline constexpr int schema_version = 7;
+inline constexpr int schema_version = 8;
 
 /// Statements that bring a database of version `from`, in [0, schema_version), to version `from` + 1. Version 0 is an
 /// empty database.

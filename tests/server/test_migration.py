@@ -13,13 +13,15 @@ from harness import PATIENCE, TUS, Daemon, hair_bytes, hdr_bytes, sha256
 
 DATA = Path(__file__).parent / "data"
 
-# Statements that turn a database of each version into the one before: version 6 did not know what clients sent, version 1 did not know who began an upload, version 2 knew
+# Statements that turn a database of each version into the one before: version 7 did not know the deaths of workers and the
+# bakes that were removed, version 6 did not know what clients sent, version 1 did not know who began an upload, version 2 knew
 # only the latest name that a bake was asked by, version 3 did not know the age of the bakes of a name and of a batch.
 BACK_TO_3 = """DROP INDEX batch_bakes_by_age; ALTER TABLE batch_bakes DROP COLUMN seq; DROP INDEX bake_names_by_path;
     ALTER TABLE bake_names DROP COLUMN seq; CREATE INDEX bake_names_by_path ON bake_names(path);
     DROP INDEX inputs_by_blob; DROP INDEX inputs_by_thumbnail;"""
 BACK_TO_2 = "DROP TABLE bake_names;"
-BACK_TO_6 = "DROP TRIGGER forget_sent_blob; DROP TABLE sent_blobs; PRAGMA user_version = 6"
+BACK_TO_7 = "DROP TABLE forgotten_bakes; ALTER TABLE stages DROP COLUMN deaths; ALTER TABLE stages DROP COLUMN ends;"
+BACK_TO_6 = BACK_TO_7 + "DROP TRIGGER forget_sent_blob; DROP TABLE sent_blobs; PRAGMA user_version = 6"
 BACK_TO_1 = "ALTER TABLE uploads DROP COLUMN token;"
 BACK = {5: "", 4: "", 3: BACK_TO_3, 2: BACK_TO_3 + BACK_TO_2, 1: BACK_TO_3 + BACK_TO_2 + BACK_TO_1}
 
@@ -159,7 +161,7 @@ class Migration(unittest.TestCase):
         with contextlib.closing(sqlite3.connect(d.path / "store/hairbake.db")) as database:
             self.assertEqual({row[0] for row in database.execute("SELECT sha256 FROM sent_blobs")}, self.SENT)
             self.assertGreater(database.execute("SELECT count(*) FROM blobs").fetchone()[0], len(self.SENT))
-            self.assertEqual(database.execute("PRAGMA user_version").fetchone()[0], 7)
+            self.assertEqual(database.execute("PRAGMA user_version").fetchone()[0], 8)
 
     def test_the_inputs_of_an_older_store_are_known_as_such(self):
         """They are never evicted; results and thumbnails are no inputs."""
@@ -179,6 +181,16 @@ class Migration(unittest.TestCase):
                 self.assert_knows_its_inputs(d)
                 self.assertEqual((d.path / "store/store-id").read_text().split()[1], words.split()[1])
 
+    def test_a_store_of_version_7_is_served_and_its_deaths_begin_anew(self):
+        with OldStore(5, limits="") as d:
+            request = d.expected["requests"]["both"]
+            d.stop()
+            d.run_sql(BACK_TO_7 + "UPDATE stages SET crashes = 5; PRAGMA user_version = 7")
+            d.start()
+            self.assert_serves(d)
+            self.assertEqual(d.wait(d.ask("POST", "/v1/bakes", request).json["id"])["state"], "done")
+            self.assertEqual(d.ask("GET", f"/v1/bakes/{'0' * 64}").status, 404)
+
     def test_bytes_of_an_older_store_that_are_neither_result_nor_thumbnail_count_as_sent(self):
         """Nobody can tell whether a client sent them. Those of a store of this version are told apart: see test_room."""
         with OldStore(5) as d:
@@ -197,7 +209,7 @@ class Migration(unittest.TestCase):
             self.assertEqual(process.wait(PATIENCE), 3)
             process.stdout.close()
             self.assertIn("its version is 1000", (d.path / "log").read_text())
-            d.run_sql("PRAGMA user_version = 7")
+            d.run_sql("PRAGMA user_version = 8")
             d.start()
 
 

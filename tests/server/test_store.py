@@ -174,7 +174,7 @@ class Budget(unittest.TestCase):
             d.put(os.urandom(budget - self.stored(d)))  # it fits to the byte: all stay
             self.assertEqual({d.ask("GET", f"/v1/bakes/{bake}").status for bake in bakes}, {200})
             d.put(b"x")
-            gone = [size for bake, size in zip(bakes, results) if d.ask("GET", f"/v1/bakes/{bake}").status == 404]
+            gone = [size for bake, size in zip(bakes, results) if d.ask("GET", f"/v1/bakes/{bake}").status == 410]
             free = budget - self.stored(d)
             self.assertGreaterEqual(free, budget // 100 * 3)
             self.assertLess(free - max(gone), budget // 100 * 3)  # the last eviction was necessary
@@ -192,7 +192,7 @@ class Budget(unittest.TestCase):
             bake = d.ask("POST", "/v1/bakes", quick_request(hair)).json["id"]
             self.assertEqual(d.wait(bake)["state"], "done")
             first, second = (d.put(os.urandom(size)) for size in (600_000, 448_576 - len(hair_bytes())))
-            self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}").status, 404)  # forgotten
+            self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}").status, 410)  # forgotten
             self.assertEqual([d.ask("HEAD", f"/v1/blobs/{x}").status for x in (hair, first, second)], [200] * 3)
             reply = d.ask("PUT", f"/v1/blobs/{sha256(b'y' * 2_000_000)}", b"y" * 2_000_000)
             self.assertEqual(reply.status, 413)
