@@ -145,6 +145,7 @@ void read_workers(Block& block, Settings& settings, const fs::path& base) {
     block.number("cpu_s", settings.cpu_seconds, 0, 366 * 86400);
     block.number("wall_s", settings.wall_seconds, 1, 366 * 86400);
     block.number("max_crashes", settings.max_crashes, 0, 1000);
+    block.number("crash_wait_s", settings.crash_wait_s, 0, 86400);
 }
 
 void read_web(Block& block, Settings& settings, const fs::path& base) {

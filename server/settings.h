@@ -51,7 +51,8 @@ struct Settings {
     std::uint64_t memory_bytes = 8ull << 30;
     std::uint64_t cpu_seconds = 4 * 3600;
     double wall_seconds = 2 * 3600;
-    int max_crashes = 5;  ///< retries after the worker process crashes or is killed
+    int max_crashes = 5;      ///< retries after the worker process crashes or is killed
+    double crash_wait_s = 2;  ///< before the first of these retries; later waits grow. 0: no waits
     // [web]
     std::optional<std::filesystem::path>
         web;  ///< folder of the page; empty: no page; by default the one beside the daemon

@@ -49,7 +49,9 @@ HttpReply ready(Service& service, Access& access, HttpRequest& request) {
         return with_paths ? text : without_paths(text, service.settings());
     };
     const std::string wrong = service.not_ready();
-    if (!wrong.empty()) return problem(503, "not-ready", shown(wrong)).with("Retry-After", "5");
+    if (!wrong.empty())
+        return problem(503, "not-ready", shown(wrong))
+            .with("Retry-After", std::to_string(service.seconds_until_retry()));
     Json answer{{"status", "ready"}};
     for (const std::string& warning : service.warnings()) answer["warnings"].push_back(shown(warning));
     return json_reply(200, answer.dump());

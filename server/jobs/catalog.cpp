@@ -46,6 +46,8 @@ Json entry(const std::string& kind, const SqlRow& row) {
 /// Throws what the failed inspection means to the client. A file that kills every worker is the file's fault.
 [[noreturn]] void refuse_outcome(const Outcome& outcome) {
     if (outcome.end == Outcome::End::trouble) refuse_for_now(outcome.message);
+    if (outcome.end == Outcome::End::died && outcome.from_outside)
+        refuse_for_now(outcome.message + ": the machine is short of memory, or another program ends the workers");
     const bool is_ours = outcome.kind == ErrorKind::out_of_resources || outcome.kind == ErrorKind::internal;
     if (outcome.end == Outcome::End::failed && is_ours) throw Error(outcome.kind, outcome.message);
     throw Refusal(Refused::unprocessable, outcome.message, "sha256");

@@ -98,7 +98,7 @@ public:
     RunStatus poll(const std::string& handle) override {
         const std::lock_guard lock(mutex_);
         const auto found = find(handle);
-        if (found == children_.end()) return {State::killed, "the worker " + handle + " is unknown"};
+        if (found == children_.end()) return {State::killed, "the worker " + handle + " is unknown", true};
         const pid_t child = found->first;
         siginfo_t end{};
         if (::waitid(P_PID, static_cast<id_t>(child), &end, WEXITED | WNOHANG | WNOWAIT) == 0 && end.si_pid == 0) {
@@ -158,7 +158,12 @@ private:
         if (WTERMSIG(status) == SIGXCPU)
             return {State::over_limit,
                     "the worker used more than " + std::to_string(settings_.cpu_seconds) + " seconds of CPU time"};
-        return {State::killed, std::string("the worker was ended by a signal: ") + ::strsignal(WTERMSIG(status))};
+        const int signal = WTERMSIG(status);
+        const char* const name = ::sigabbrev_np(signal);
+        return {State::killed,
+                std::string("the worker was ended by a signal: ") + ::strsignal(signal) +
+                    (name ? std::string(" (SIG") + name + ")" : std::string()),
+                signal == SIGKILL || signal == SIGTERM || signal == SIGINT || signal == SIGHUP || signal == SIGQUIT};
     }
 
     const RunnerSettings settings_;

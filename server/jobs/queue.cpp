@@ -7,8 +7,12 @@
 #include "server/store/refusal.h"
 
 namespace hairbake {
-Queue::Queue(Database& database, BlobStore& store, int max_crashes)
-    : database_(database), store_(store), max_crashes_(max_crashes) {}
+
+Queue::Queue(Database& database, BlobStore& store, const DeathRules& rules)
+    : database_(database),
+      store_(store),
+      rules_(rules),
+      watch_(std::chrono::duration_cast<DeathWatch::Duration>(std::chrono::duration<double>(longest_wait(rules)))) {}
 
 // ---- boot ----------------------------------------------------------------------------------------------------------
 
@@ -29,8 +33,13 @@ Queue::Recovered Queue::recover(const std::vector<StartedTask>& surviving) {
                            [&](const StartedTask& task) { return task.stage == stage; });
     };
     database_.write([&](Sql& sql) {
-        for (const SqlRow& row : sql.rows("SELECT key FROM stages WHERE state = 'running'"))
-            if (!survives(row.text(0))) release_stage(sql, row.text(0));
+        for (const SqlRow& row : sql.rows("SELECT key, ends FROM stages WHERE state = 'running'")) {
+            if (survives(row.text(0))) continue;
+            release_stage(sql, row.text(0));
+            sql.run("UPDATE stages SET ends = ends + 1 WHERE key = ?", {row.text(0)});
+            hold_after_ends(row.text(0), static_cast<int>(row.integer(1)) + 1);
+        }
+        hold_after_deaths(sql);
         recovered.lost = requeue_incomplete(sql);
         recovered.planned_again = plan_queued_again(sql);
     });
@@ -88,8 +97,11 @@ void Queue::add_stage(Sql& sql, const StagePlan& stage, int priority) {
         touch_stage(sql, stage.key);
     } else {
         sql.run(
-            "UPDATE stages SET state = 'queued', priority = ?, attempts = 0, crashes = 0, error = NULL WHERE key = ?",
+            "UPDATE stages SET state = 'queued', priority = ?, attempts = 0, crashes = 0, deaths = NULL, ends = 0, "
+            "error = NULL WHERE key = ?",
             {std::int64_t(priority), stage.key});
+        const std::lock_guard lock(mutex_);
+        pause_.forget(stage.key);
     }
 }
 
@@ -195,24 +207,12 @@ void Queue::failed(const ClaimedStage& stage, const StageError& error) {
     end_well(stage);
 }
 
-void Queue::died(const ClaimedStage& stage, const std::string& how) {
-    database_.write([&](Sql& sql) {
-        sql.run("UPDATE stages SET crashes = crashes + 1 WHERE key = ?", {stage.key});
-        const auto crashes = sql.rows("SELECT crashes FROM stages WHERE key = ?", {stage.key}).at(0).integer(0);
-        if (crashes <= max_crashes_)
-            release_stage(sql, stage.key);
-        else
-            fail_stage(sql, stage.key,
-                       {ErrorKind::internal, how + " (it was started " + std::to_string(crashes) + " times)", {}});
-    });
-    end_well(stage);
-}
-
 void Queue::released(const ClaimedStage& stage) {
     database_.write([&](Sql& sql) { release_stage(sql, stage.key); });
     {
         const std::lock_guard lock(mutex_);
         pause_.ended(stage.key, std::chrono::steady_clock::now());
+        watch_.forget(stage.key);
     }
     finish_claim(stage);
 }

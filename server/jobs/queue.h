@@ -13,8 +13,10 @@
 #include <vector>
 
 #include "server/jobs/bake_records.h"
+#include "server/jobs/death_watch.h"
 #include "server/jobs/job_state.h"
 #include "server/jobs/queue_pause.h"
+#include "server/jobs/stage_deaths.h"
 #include "server/jobs/stage_plan.h"
 
 namespace hairbake {
@@ -57,7 +59,7 @@ struct Submitted {
 /// Thread-safe. Every change is one transaction.
 class Queue {
 public:
-    Queue(Database& database, BlobStore& store, int max_crashes);
+    Queue(Database& database, BlobStore& store, const DeathRules& rules);
 
     /// The running stages whose handles are of the runner of that name.
     std::vector<StartedTask> started_tasks(const std::string& runner);
@@ -67,7 +69,8 @@ public:
         std::size_t planned_again = 0;  ///< stages that another version of hairbake had queued
     };
     /// At boot. Stages of `surviving` workers stay running. Other running stages are queued again, and so are stages
-    /// whose files are not all stored. Inputs that are not stored are forgotten. Queued stages of another version of
+    /// whose files are not all stored. Stages whose workers died go on waiting, and so does a stage that ran at the end
+    /// of several daemons, as after a death for each end but the first. Inputs that are not stored are forgotten. Queued stages of another version of
     /// hairbake are planned again; their bakes keep their ids.
     Recovered recover(const std::vector<StartedTask>& surviving = {});
 
@@ -97,8 +100,11 @@ public:
     // How a claimed stage ended.
     void done(const ClaimedStage& stage, const std::vector<StageFile>& files, const std::string& manifest);
     void failed(const ClaimedStage& stage, const StageError& error);
-    /// Queues the stage again; fails it after too many deaths.
-    void died(const ClaimedStage& stage, const std::string& how);
+    /// A death that counts against the stage: queues it again, to wait longer after each; fails it after too many.
+    void died(const ClaimedStage& stage, const std::string& how, bool from_outside);
+    /// The reason when the machine is at fault for a death from outside (death_watch.h), as an operator should know it.
+    /// Call it once for each, before pause() or died(). Earlier deaths that it explains are forgiven.
+    std::optional<std::string> trouble_in_death(const ClaimedStage& stage, const std::string& how);
     /// Queues the stage again when a live bake needs it; else cancels it.
     void released(const ClaimedStage& stage);
     /// The machine was at fault, as told to pause(): like released(), and the attempt does not count.
@@ -109,13 +115,22 @@ public:
 
     struct Pause {
         std::string reason;          ///< empty: the queue is not paused
+        double next_try_s = 0;       ///< seconds from now; at least 0
         std::uint64_t troubles = 0;  ///< since the start
     };
     Pause paused();
     /// The trouble that a queued stage waits for: the last one that it met itself, or that of the queue; or empty.
     std::string trouble_of(const std::string& stage);
 
-    /// Throws Refusal(not_found).
+    /// Whether results of later bakes that have not ended hold `bytes` that the stage lacks. Bakes come in the order of
+    /// the queue: by priority, then age. Without this, bakes that each have a part of their results would wait for each
+    /// other's room for ever.
+    bool can_give_way(const std::string& stage, std::uint64_t bytes);
+    /// Removes such results, those of the latest bakes first, and queues their stages again. Removes nothing and returns
+    /// false where they hold less. The caller holds database.lock() until it has used the room.
+    bool make_others_give_way(const std::string& stage, std::uint64_t bytes);
+
+    /// Throws Refusal(not_found or gone).
     /// Throws Refusal(conflict) when the bake has ended.
     void cancel(const std::string& bake);
 
@@ -143,6 +158,10 @@ private:
     std::optional<ClaimedStage> try_to_claim();
     std::string next_stage(Sql& sql);
     void finish_claim(const ClaimedStage& stage);
+    std::vector<StageDeath> add_death(Sql& sql, const std::string& stage, const StageDeath& death);
+    void forgive(const std::vector<DeathWatch::Forgiven>& stages);
+    void hold_after_deaths(Sql& sql);
+    void hold_after_ends(const std::string& stage, int ends);
     void end_well(const ClaimedStage& stage);
     void wake();
 
@@ -153,7 +172,7 @@ private:
 
     Database& database_;
     BlobStore& store_;
-    const int max_crashes_;
+    const DeathRules rules_;
     std::atomic<bool> stopping_{false};
     std::mutex mutex_;  ///< guards the members below; taken after the database's lock, never before
     std::condition_variable changed_;
@@ -161,6 +180,7 @@ private:
     std::map<std::string, Running> running_;
     std::deque<ClaimedStage> resumed_;  ///< of surviving workers; to be claimed first
     QueuePause pause_;
+    DeathWatch watch_;
 };
 
 }  // namespace hairbake

@@ -1,6 +1,8 @@
 // How the threads of the worker pool take stages from the queue, and when: the pause while the machine is in trouble.
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <chrono>
 #include <limits>
 
 #include "server/jobs/queue.h"
@@ -101,6 +103,7 @@ std::optional<ClaimedStage> Queue::claim_queued() {
         return std::nullopt;
     }
     pause_.claimed(claimed->key);
+    watch_.started(claimed->key);
     running_[claimed->key] = {claimed->cancel, {}};
     if (stopping_) *claimed->cancel = true;  // stop() did not see this one
     return claimed;
@@ -119,6 +122,7 @@ void Queue::end_well(const ClaimedStage& stage) {
     {
         const std::lock_guard lock(mutex_);
         pause_.worked(stage.key);
+        watch_.worked(stage.key);
     }
     finish_claim(stage);
 }
@@ -130,7 +134,9 @@ void Queue::pause(const std::string& stage, const std::string& reason) {
 
 Queue::Pause Queue::paused() {
     const std::lock_guard lock(mutex_);
-    return {pause_.reason(), pause_.troubles()};
+    const auto time = Clock::now();
+    const std::chrono::duration<double> wait = pause_.next_try(time) - time;
+    return {pause_.reason(), std::max(0.0, wait.count()), pause_.troubles()};
 }
 
 std::string Queue::trouble_of(const std::string& stage) {

@@ -62,15 +62,31 @@ void QueuePause::met_trouble(const std::string& stage, const std::string& reason
 
 void QueuePause::worked(const std::string& stage) {
     ++works_;
-    waits_.erase(stage);
-    held_.erase(stage);
+    forget(stage);
     if (probes_.count(stage)) clear();
 }
 
 void QueuePause::ended(const std::string& stage, Time now) {
+    forget(stage);
+    if (probes_.erase(stage)) until_ = now;
+}
+
+void QueuePause::died(const std::string& stage, const std::string& reason, Time now, Time end) {
+    if (probes_.erase(stage)) until_ = now + wait_after(++failed_tries_);
+    hold(stage, reason, end);
+}
+
+void QueuePause::hold(const std::string& stage, const std::string& reason, Time end) {
+    Wait& wait = waits_[stage];
+    ++wait.troubles;
+    wait.works = works_;
+    wait.reason = reason;
+    held_[stage] = end;
+}
+
+void QueuePause::forget(const std::string& stage) {
     waits_.erase(stage);
     held_.erase(stage);
-    if (probes_.erase(stage)) until_ = now;
 }
 
 void QueuePause::clear() {

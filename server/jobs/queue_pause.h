@@ -47,6 +47,13 @@ public:
     void worked(const std::string& stage);
     /// The stage ended and showed nothing about the machine: it was cancelled.
     void ended(const std::string& stage, Time now);
+    /// The stage's worker died, and the death counts against the stage: a probe has not worked. The stage waits until
+    /// `end`.
+    void died(const std::string& stage, const std::string& reason, Time now, Time end);
+    /// The stage waits until `end`, for `reason`.
+    void hold(const std::string& stage, const std::string& reason, Time end);
+    /// The stage does not wait any more.
+    void forget(const std::string& stage);
     /// No stage is queued: nothing waits.
     void clear();
 

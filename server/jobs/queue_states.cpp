@@ -40,8 +40,12 @@ void Queue::settle_bakes_of(Sql& sql, const std::string& stage) {
 /// Cancels a live stage that no live bake needs.
 void Queue::drop_unneeded(Sql& sql, const std::string& stage) {
     if (is_needed(sql, stage)) return;
-    sql.run("UPDATE stages SET state = 'cancelled' WHERE key = ? AND state = 'queued'", {stage});
+    const int waiting = sql.run("UPDATE stages SET state = 'cancelled' WHERE key = ? AND state = 'queued'", {stage});
     const std::lock_guard lock(mutex_);
+    if (waiting > 0) {
+        pause_.forget(stage);
+        watch_.forget(stage);
+    }
     if (const auto running = running_.find(stage); running != running_.end()) *running->second.cancel = true;
 }
 

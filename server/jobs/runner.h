@@ -29,6 +29,9 @@ struct RunStatus {
     };
     State state = State::running;
     std::string message;  ///< how the worker ended, for people; empty while it runs
+    /// Of `killed`: the system, another process or a lost connection ended it, and no fault of its own such as a wrong
+    /// address.
+    bool from_outside = false;
 };
 
 /// Thread-safe.

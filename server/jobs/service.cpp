@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <span>
 
@@ -51,7 +52,7 @@ struct Service::Parts {
           room(database, store, reserve, settings.store, {settings.budget_bytes, settings.keep_free_bytes}),
           runner(std::move(with)),
           inspector(make_runner(local_runner_name, runner_settings(settings))),
-          queue(database, store, settings.max_crashes),
+          queue(database, store, {settings.max_crashes, settings.crash_wait_s}),
           bakes(database, queue),
           batches(database, queue),
           catalog(database, store, *inspector),
@@ -250,6 +251,12 @@ std::string Service::not_ready() {
         return error_text(error);
     }
     return {};
+}
+
+int Service::seconds_until_retry() {
+    const Queue::Pause pause = parts_->queue.paused();
+    constexpr int usual_s = 5;
+    return pause.reason.empty() ? usual_s : std::max(1, static_cast<int>(std::ceil(pause.next_try_s)));
 }
 
 std::vector<std::string> Service::warnings() { return parts_->room.warnings(); }

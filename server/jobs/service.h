@@ -74,7 +74,7 @@ public:
     /// Throws Refusal.
     Answer submit(const std::string& body);
 
-    /// Throws Refusal(not_found).
+    /// Throws Refusal(not_found or gone).
     /// Throws Refusal(conflict) when the bake has ended.
     void cancel(const std::string& bake);
 
@@ -82,6 +82,8 @@ public:
     /// Empty when the store and the database can be written, workers can be started and the queue is not paused; else
     /// the reason.
     std::string not_ready();
+    /// While the queue is paused: seconds until its next try, at least 1; else 5, the usual time to ask again.
+    int seconds_until_retry();
     /// What an operator should know although the service is ready: see Room::warnings().
     std::vector<std::string> warnings();
 

@@ -25,6 +25,7 @@ struct Outcome {
     std::string facts = "{}";
     ErrorKind kind = ErrorKind::internal;
     std::string message, field;
+    bool from_outside = false;  ///< of `died`: the system or another process ended the worker
 };
 
 /// What the caller of follow_task() wants at the moment.

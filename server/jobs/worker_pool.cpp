@@ -108,6 +108,11 @@ void WorkerPool::run_to_the_end(const ClaimedStage& stage) {
     if (outcome.end == End::died || (outcome.end == End::failed && outcome.kind == ErrorKind::internal))
         outcome = explain_death(std::move(outcome), runner_, store_.incoming_folder(),
                                 [&] { return queue_.stopping() || *stage.cancel ? Wish::stop : Wish::go_on; });
+    if (outcome.end == End::died && outcome.from_outside)
+        if (std::optional<std::string> trouble = queue_.trouble_in_death(stage, outcome.message)) {
+            outcome.end = End::trouble;
+            outcome.message = *std::move(trouble);
+        }
     spdlog::info("stage {} {} attempt {}: {}", stage.kind, stage.key.substr(0, 12), stage.attempt, log_text(outcome));
     if (outcome.end == End::trouble) queue_.pause(stage.key, outcome.message);
     if (outcome.end != End::trouble) forget_result(stage);
@@ -129,7 +134,7 @@ void WorkerPool::record(const ClaimedStage& stage, const Outcome& outcome) {
         case End::failed:
             return queue_.failed(stage, {outcome.kind, outcome.message, outcome.field});
         case End::died:
-            return queue_.died(stage, outcome.message);
+            return queue_.died(stage, outcome.message, outcome.from_outside);
         case End::trouble:
             return queue_.given_back(stage);
         case End::cancelled:

@@ -13,7 +13,9 @@ using End = Outcome::End;
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::seconds longest_trial{60};
 
-Outcome outcome(End end, const std::string& message) { return {end, "{}", ErrorKind::out_of_resources, message, {}}; }
+Outcome outcome(End end, const std::string& message) {
+    return {end, "{}", ErrorKind::out_of_resources, message, {}, false};
+}
 
 /// The worker made other keys than the daemon if it is of another version.
 Outcome check_version(const Outcome& trial, const std::string& program) {

@@ -51,13 +51,14 @@ class Reply:
 class Daemon:
     """`with Daemon() as d:`; the store outlives restarts within the block."""
 
-    def __init__(self, config="", workers=1, max_crashes=50, tokens="", listen="port = 0", limits="", before=()):
+    def __init__(self, config="", workers=1, max_crashes=50, tokens="", listen="port = 0", limits="", before=(),
+                 crash_wait=0):
         """`config`, `listen` and `limits` are lines of [store], [listen] and [workers]; `before` are the words of a program
-        that starts the daemon. With a socket in `listen`, `port` is None and `address` is the socket's path."""
+        that starts the daemon; `crash_wait` is [workers] crash_wait_s. With a socket in `listen`, `port` is None and `address` is the socket's path."""
         self.folder = tempfile.TemporaryDirectory(prefix="hairbake-server-")
         self.path = Path(self.folder.name)
         self.config, self.workers, self.max_crashes, self.tokens = config, workers, max_crashes, tokens
-        self.listen, self.limits, self.before = listen, limits, list(before)
+        self.listen, self.limits, self.before, self.crash_wait = listen, limits, list(before), crash_wait
         self.process, self.port, self.address = None, None, None
 
     def __enter__(self):
@@ -73,6 +74,7 @@ class Daemon:
         (self.path / "hairbake.toml").write_text(
             f'[listen]\n{self.listen}\n[store]\nfolder = "store"\n{self.config}\n'
             f"[workers]\ncount = {self.workers}\nthreads = 1\nmax_crashes = {self.max_crashes}\n"
+            f"crash_wait_s = {self.crash_wait}\n"
             f"{self.limits}\n{self.tokens}\n")
 
     def spawn(self):

@@ -39,6 +39,7 @@ TEST_F(SettingsTest, TheDocumentedFileHasEveryDefault) {
     EXPECT_EQ(from_file.wall_seconds, defaults.wall_seconds);
     EXPECT_EQ(from_file.runner, defaults.runner);
     EXPECT_EQ(from_file.max_crashes, defaults.max_crashes);
+    EXPECT_EQ(from_file.crash_wait_s, defaults.crash_wait_s);
 }
 
 TEST_F(SettingsTest, ReadsTokensAndPaths) {

@@ -50,7 +50,7 @@ protected:
     test_support::TemporaryFolder folder;
     Database database{folder / "test.db"};
     BlobStore store{folder / "store", database};
-    Queue queue{database, store, 1};
+    Queue queue{database, store, {1, 0}};
     Bakes bakes{database, queue};
 };
 

@@ -52,7 +52,7 @@ protected:
     test_support::TemporaryFolder folder;
     Database database{folder / "test.db"};
     BlobStore store{folder / "store", database};
-    Queue queue{database, store, 1};
+    Queue queue{database, store, {1, 0}};
 };
 
 TEST_F(QueueTest, ABakeOfThreeStagesIsDoneAfterTheThirdAndKeepsTheirOrder) {
@@ -153,9 +153,9 @@ TEST_F(QueueTest, AStageThatIsAskedForWhileItIsBeingStoppedRunsAgain) {
 
 TEST_F(QueueTest, ADeadWorkerIsReplacedUntilItDiedTooOften) {
     queue.submit({bake("a", {"T"})});
-    queue.died(*queue.claim(), "killed");
+    queue.died(*queue.claim(), "killed", true);
     EXPECT_EQ(stage_state("T"), "queued");
-    queue.died(*queue.claim(), "killed");  // max_crashes is 1
+    queue.died(*queue.claim(), "killed", true);  // max_crashes is 1
     EXPECT_EQ(bake_state("a"), "failed");
 }
 
@@ -163,7 +163,7 @@ TEST_F(QueueTest, WhatRanAtAKillIsQueuedAtTheNextStart) {
     queue.submit({bake("a", {"T", "I"})});
     queue.done(*queue.claim(), {}, "{}");
     queue.claim();
-    Queue next(database, store, 1);
+    Queue next(database, store, {1, 0});
     next.recover();
     EXPECT_EQ(stage_state("T"), "done");
     EXPECT_EQ(stage_state("I"), "queued");
@@ -175,7 +175,7 @@ TEST_F(QueueTest, AStageOfASurvivingWorkerKeepsRunningAfterARestart) {
     const ClaimedStage claimed = *queue.claim();
     queue.claim();
     queue.started({claimed.key, "job 7", "folder"}, "farm");
-    Queue next(database, store, 1);
+    Queue next(database, store, {1, 0});
     const std::vector<StartedTask> tasks = next.started_tasks("farm");
     ASSERT_EQ(tasks.size(), 1u);
     EXPECT_TRUE(next.started_tasks("local").empty());
@@ -199,7 +199,7 @@ TEST_F(QueueTest, ASurvivingWorkerThatNoBakeNeedsIsToBeStopped) {
     queue.submit({bake("a", {"T"})});
     queue.started({queue.claim()->key, "job 7", "folder"}, "farm");
     queue.cancel("a");
-    Queue next(database, store, 1);
+    Queue next(database, store, {1, 0});
     next.recover(next.started_tasks("farm"));
     EXPECT_TRUE(*next.claim()->cancel);
 }
