@@ -62,6 +62,7 @@ private:
     std::uint64_t new_bytes(const Sizes& sizes);
     std::uint64_t bytes_beside(const ClaimedStage& stage, const Sizes& sizes, std::uint64_t enough);
     void check_known_result(const ClaimedStage& stage);
+    void require_room(const ClaimedStage& stage, std::uint64_t bytes);
     void make_room(const ClaimedStage& stage, const Sizes& sizes);
     void note_full_disk(const ClaimedStage& stage);
     void remember(const ClaimedStage& stage, Waiting waiting);

@@ -157,15 +157,33 @@ void WorkerPool::check_known_result(const ClaimedStage& stage) {
         throw_store_error(store_.incoming_folder() / "result", ENOSPC);
     if (!known.sizes.empty()) {
         check_fits(stage, known.sizes);
-        room_.require_room(new_bytes(known.sizes));
+        require_room(stage, new_bytes(known.sizes));
     }
     remember(stage, {known.sizes, std::nullopt});
 }
 
-void WorkerPool::make_room(const ClaimedStage& stage, const Sizes& sizes) {
+/// Throws Refusal(full or busy) when there is no room, also if later bakes gave way.
+void WorkerPool::require_room(const ClaimedStage& stage, std::uint64_t bytes) {
+    const auto held = database_.lock();
     try {
-        room_.make_room(new_bytes(sizes));
-    } catch (const Refusal&) {
+        room_.require_room(bytes);
+    } catch (const Refusal& refusal) {
+        if (refusal.why() != Refused::full || !queue_.can_give_way(stage.key, room_.lacking(bytes))) throw;
+    }
+}
+
+/// With database_.lock() held.
+void WorkerPool::make_room(const ClaimedStage& stage, const Sizes& sizes) {
+    const std::uint64_t bytes = new_bytes(sizes);
+    const auto make_room_at_last = [&] {
+        if (!queue_.make_others_give_way(stage.key, room_.lacking(bytes))) return false;
+        room_.make_room(bytes);
+        return true;
+    };
+    try {
+        room_.make_room(bytes);
+    } catch (const Refusal& refusal) {
+        if (refusal.why() == Refused::full && make_room_at_last()) return;
         remember(stage, {sizes, std::nullopt});
         throw;
     }

@@ -174,6 +174,11 @@ void Room::require_room(std::uint64_t bytes) {
     require_room(bytes, {});
 }
 
+std::uint64_t Room::lacking(std::uint64_t bytes) {
+    const std::uint64_t more = excess(others() + bytes);
+    return more == 0 ? 0 : more - std::min(more, evictable_bytes(database_, more));
+}
+
 /// With database_.lock() held. Returns what counts beside blobs: `bytes`, bodies under way and unfinished uploads.
 std::uint64_t Room::require_room(std::uint64_t bytes, const Counters& own) {
     std::uint64_t more = bytes, under_way = 0;

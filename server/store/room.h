@@ -99,6 +99,9 @@ public:
     /// Throws as make_room(), and evicts nothing.
     void require_room(std::uint64_t bytes);
 
+    /// Bytes that `bytes` more lack also after all evictions; 0 where they fit.
+    std::uint64_t lacking(std::uint64_t bytes);
+
     /// Bytes that the disk has free.
     std::uint64_t disk_free() const { return free_bytes(); }
 

@@ -6,7 +6,7 @@ import unittest
 
 from harness import Daemon, hair_bytes, quick_request, slow_request
 from test_hostile import write_worker
-from test_room import eventually
+from rooms import eventually
 from test_troubles import Queue
 
 

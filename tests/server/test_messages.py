@@ -5,9 +5,9 @@ import subprocess
 import time
 import unittest
 
+from disks import SmallDisk
 from harness import PATIENCE, PROGRAMS, TUS, Daemon, hair_bytes, hdr_bytes, quick_request, sha256
 from rooms import eventually, head, under_way
-from test_disk import SmallDisk
 
 OCTETS = {"Content-Type": "application/octet-stream"}
 

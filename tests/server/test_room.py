@@ -151,7 +151,7 @@ class Inputs(RoomTest):
             self.assert_full(d.ask("PUT", f"/v1/blobs/{sha256(bytes(200_000))}", bytes(200_000)))
             self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}").json["state"], "done")  # a refused body evicts nothing
             inputs["last"] = d.put(os.urandom(BUDGET - self.stored(d) + 1))
-            self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}").status, 404)  # a result makes room
+            self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}").status, 410)  # a result makes room
             for name, digest in inputs.items():
                 self.assertEqual(sha256(d.ask("GET", f"/v1/blobs/{digest}").body), digest, name)
             self.assertEqual(d.ask("GET", f"/v1/models/{inputs['listed hair']}/thumbnail.png").status, 200)

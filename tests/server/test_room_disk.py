@@ -169,6 +169,56 @@ exec {PROGRAMS / "hairbake-worker"} "$@"
             self.assertEqual(d.ask("GET", "/readyz").status, 200)
             self.assertEqual(d.leftovers(), [])
 
+    def two_bakes_that_hold_each_others_room(self, priorities):
+        """Each has its maps stored (1 + 6 maps of 6 x 25 x 25 texels of 12 bytes are 315 kB) and lacks the room for its
+        transmittance: 10,000 points of 4 bytes. Hair and a filler leave 20 kB."""
+        d = Daemon(config=SMALL, workers=4)
+        d.program, d.go = d.path / "worker", d.path / "go"
+        d.program.write_text(f'''#!/bin/sh
+for folder; do :; done
+if grep -q '"stages":."transmittance"' "$folder/task.json"; then while [ ! -e "{d.go}" ]; do sleep 0.05; done; fi
+exec {PROGRAMS / "hairbake-worker"} "$@"
+''')
+        d.program.chmod(0o755)
+        d.limits = f'program = "{d.program}"'
+        d.start()
+        hair, bakes = d.put(hair_bytes(strands=1000)), []
+        for number, priority in enumerate(priorities):
+            request = quick_request(hair, d.put(hdr_bytes(red=100 + number)), irradiance={"face_size": 25, "specular_maps": 6},
+                                    transmittance={"seed": number, "direction_set": "random"})
+            bakes.append(d.ask("POST", "/v1/bakes", {**request, "priority": priority}).json["id"])
+        for bake in bakes:
+            eventually(lambda: [s["state"] for s in d.ask("GET", f"/v1/bakes/{bake}").json["stages"]] == ["running", "done"])
+        d.put(os.urandom(BUDGET - self.stored(d) - 20_000))
+        return d, bakes
+
+    def test_bakes_that_hold_the_room_of_each_other_come_one_after_the_other(self):
+        """Fault: they waited for each other for ever. Relatives: the older goes first; the one with the higher priority does."""
+        for priorities, first in (((0, 0), 0), ((0, 5), 1)):
+            d, bakes = self.two_bakes_that_hold_each_others_room(priorities)
+            with self.subTest(priorities), contextlib.ExitStack() as stack:
+                stack.push(d)
+                begin = (d.path / "log").stat().st_size
+                d.go.touch()
+                ends = []
+
+                def all_end():
+                    for bake in bakes:
+                        reply = d.ask("GET", f"/v1/bakes/{bake}")
+                        if bake not in ends and (reply.status == 410 or reply.json["state"] == "done"):
+                            ends.append(bake)
+                    return len(ends) == 2
+                eventually(all_end)
+                self.assertEqual(ends, [bakes[first], bakes[1 - first]])
+                log = (d.path / "log").read_text()[begin:]
+                self.assertEqual(log.count("an earlier bake needs the room"), 1, log)
+                last = d.ask("GET", f"/v1/bakes/{bakes[1 - first]}").json
+                self.assertEqual(len(last["files"]), 7, last["files"])
+                for file in last["files"]:
+                    self.assertEqual(d.ask("GET", file["href"]).status, 200)
+                self.assertEqual(d.ask("GET", "/readyz").status, 200)
+                self.assertEqual(d.leftovers(), [])
+
     def test_relative_a_result_that_fits_when_other_inputs_go_waits(self):
         with Daemon(config=SMALL) as d:
             other = d.put(os.urandom(600_000))

@@ -151,7 +151,7 @@ class RemovalLog(unittest.TestCase):
             for number in range(2):  # more than what is left without the results
                 blob = d.put(os.urandom((1 << 20) // 2 - 9000))
                 d.ask("PUT", f"/v1/names/mesh/{number}", {"sha256": blob})
-            self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}").status, 404)
+            self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}").status, 410)
             self.assertIn((len({f["sha256"] for f in files}), sum({f["sha256"]: f["bytes"] for f in files}.values()),
                            "the budget is used up; least recently used first"), self.removals(d))
 
