@@ -135,17 +135,21 @@ AskedBake read_bake_request(Sql& sql, const std::string& text, const std::option
 }
 
 std::vector<std::string> lighting_blocks() {
-    std::vector<std::string> blocks;
-    const auto reads = [](std::span<const std::string_view> list, std::string_view name) {
+    const auto blocks_of = [](const Stage& stage) {  // a stage may read some fields of a block alone
+        std::vector<std::string> blocks;
+        for (const std::string_view setting : stage.settings) blocks.emplace_back(setting.substr(0, setting.find('.')));
+        return blocks;
+    };
+    const auto has = [](const auto& list, std::string_view name) {
         return std::find(list.begin(), list.end(), name) != list.end();
     };
+    std::vector<std::string> blocks;
     for (const Stage& stage : stages())
-        for (const std::string_view block : stage.settings)
-            if (reads(stage.inputs, "environment") && std::find(blocks.begin(), blocks.end(), block) == blocks.end())
-                blocks.emplace_back(block);
+        for (const std::string& block : blocks_of(stage))
+            if (has(stage.inputs, "environment") && !has(blocks, block)) blocks.push_back(block);
     for (const Stage& stage : stages())
-        if (!reads(stage.inputs, "environment"))
-            std::erase_if(blocks, [&](const std::string& block) { return reads(stage.settings, block); });
+        if (!has(stage.inputs, "environment"))
+            std::erase_if(blocks, [&](const std::string& block) { return has(blocks_of(stage), block); });
     return blocks;
 }
 
