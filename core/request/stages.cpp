@@ -24,7 +24,7 @@ constexpr Text irradiance_settings[] = {"irradiance", "environment_settings", "f
 constexpr Phase irradiance_phases[] = {{"irradiance", 2}};
 
 constexpr Stage table[] = {
-    {"transmittance", 3, transmittance_inputs, transmittance_settings, transmittance_phases,
+    {"transmittance", 4, transmittance_inputs, transmittance_settings, transmittance_phases,
      [](const BakeRequest& request) { return request.hair.has_value(); }, true, ""},
     {"irradiance", 3, irradiance_inputs, irradiance_settings, irradiance_phases,
      [](const BakeRequest& request) { return request.environment.has_value(); }, true, "irradiance"},
