@@ -117,19 +117,38 @@ MeshFile triangles_of(PolygonFile from, const std::string& name) {
     return file;
 }
 
+/// At most the first mesh_header_bytes of the file.
+std::vector<std::byte> beginning_of(OpenMesh& open) {
+    std::vector<std::byte> bytes(std::min<std::uintmax_t>(open.size, mesh_header_bytes));
+    open.stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(open.stream.gcount(), 0)));
+    return bytes;
+}
+
 }  // namespace
 
 void check_mesh(const std::filesystem::path& file) {
-    auto [stream, size] = open_mesh(file);
-    std::vector<std::byte> bytes(std::min<std::uintmax_t>(size, mesh_header_bytes));
-    stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    const auto first = without_mark(std::span(bytes).first(static_cast<std::size_t>(stream.gcount())));
-    reader_of_mesh(first, file.string()).check(first, size - (bytes.size() - first.size()), file.string());
+    OpenMesh open = open_mesh(file);
+    const std::vector<std::byte> bytes = beginning_of(open);
+    const auto first = without_mark(bytes);
+    reader_of_mesh(first, file.string()).check(first, open.size - (bytes.size() - first.size()), file.string());
 }
 
-bool begins_as_mesh(std::span<const std::byte> first) {
-    first = without_mark(first);
-    return ply_reader.recognises(first) || glb_reader.recognises(first);
+bool is_mesh_file(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) refuse_unreadable(file, errno);
+    OpenMesh open{std::move(stream), mesh_header_bytes};
+    const std::vector<std::byte> bytes = beginning_of(open);
+    const auto first = without_mark(bytes);
+    if (ply_reader.recognises(first) || glb_reader.recognises(first)) return true;
+    std::string extension = file.extension().string();
+    for (char& c : extension)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    constexpr std::string_view extensions[] = {".obj", ".ply", ".glb", ".gltf"};
+    if (std::find(std::begin(extensions), std::end(extensions), extension) != std::end(extensions)) return true;
+    const std::string_view text(reinterpret_cast<const char*>(first.data()), first.size());
+    const bool is_text = std::none_of(text.begin(), text.end(), [](char c) { return c >= 0 && c < '\t'; });
+    return is_text && (text.starts_with("v ") || text.find("\nv ") != std::string_view::npos);
 }
 
 MeshFile read_mesh_file(std::span<const std::byte> bytes, const std::string& name) {

@@ -51,7 +51,9 @@ TriangleMesh read_mesh(std::span<const std::byte> bytes, const std::string& name
 /// Throws the same errors with the same words.
 void check_mesh(const std::filesystem::path& file);
 
-/// Whether a file that begins with `first` can only be a mesh: it begins as PLY or binary glTF.
-bool begins_as_mesh(std::span<const std::byte> first);
+/// Whether the file begins as PLY or binary glTF, has the extension of a mesh, or is a text with a line that begins with
+/// "v ". In the last two cases read_mesh() may refuse it.
+/// Throws Error(bad_input) when the file cannot be opened.
+bool is_mesh_file(const std::filesystem::path& file);
 
 }  // namespace hairbake

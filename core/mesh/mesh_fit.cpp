@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -19,9 +20,10 @@ namespace {
 
 constexpr std::size_t most_points = 100'000, most_roots = 500, most_solid_angles = 20'000'000;
 // A root is near the surface within this share of the hair's longest side, or of the mesh's: flat triangles lie so far
-// below the curved surface that they stand for.
-constexpr double near_of_hair = 0.02, near_of_mesh = 0.002;
-constexpr double odd_size = 30;  // lashes are a tenth of a head, a ponytail is three of them
+// below the curved surface that they stand for. Within a tenth of that it is on the surface.
+constexpr double near_of_hair = 0.02, near_of_mesh = 0.002, on_surface = 0.1;
+constexpr double clearly_better = 4;  // times nearer
+constexpr double odd_size = 30;       // lashes are a tenth of a head, a ponytail is three of them
 
 /// A change of the mesh that would undo an error: each root is moved the other way instead.
 struct Change {
@@ -58,27 +60,32 @@ std::vector<Vec3d> roots_of(const HairPoints& hair) {
     return roots;
 }
 
-/// The share of the roots that would lie near the surface.
-double share_near(const TriangleTree& tree, const std::vector<Vec3d>& roots, const Change& change, const Sizes& sizes) {
-    std::atomic<std::size_t> count = 0;
+/// The median distance of the roots to the changed mesh; infinite where half of them are not near it.
+double root_distance(const TriangleTree& tree, const std::vector<Vec3d>& roots, const Change& change,
+                     const Sizes& sizes) {
+    std::vector<double> distances(roots.size(), std::numeric_limits<double>::infinity());
     parallel_for(roots.size(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-            count += tree.nearest(before(change, roots[i]), sizes.near(change) / change.scale).has_value();
+            if (const auto nearest = tree.nearest(before(change, roots[i]), sizes.near(change) / change.scale))
+                distances[i] = nearest->distance * change.scale;
     });
-    return static_cast<double>(count) / static_cast<double>(roots.size());
+    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+    std::nth_element(distances.begin(), middle, distances.end());
+    return *middle;
 }
 
-/// The change that brings the most roots to the surface, nine in ten at least.
-std::optional<Change> helpful_change(const TriangleTree& tree, const std::vector<Vec3d>& roots, const Sizes& sizes) {
+/// The change that brings the roots nearest to the surface, if it is clearly better than none (`distance`).
+std::optional<Change> helpful_change(const TriangleTree& tree, const std::vector<Vec3d>& roots, const Sizes& sizes,
+                                     double distance) {
     constexpr std::array scales{1.0, 100.0, 0.01, 10.0, 0.1, 1000.0, 0.001, 2.54, 1 / 2.54, 39.37, 1 / 39.37};
     std::optional<Change> best;
-    double most = 0.9;
+    double least = distance / clearly_better;
     for (const double scale : scales)
         for (const int turns : {0, -1, 1}) {
-            const double share = share_near(tree, roots, {turns, scale}, sizes);
-            if (share < most || (best && share == most)) continue;
+            const double found = root_distance(tree, roots, {turns, scale}, sizes);
+            if (!(found < least)) continue;
             best = {turns, scale};
-            most = share;
+            least = found;
         }
     return best;
 }
@@ -119,13 +126,15 @@ void warn_of_place(const TriangleTree& tree, const TriangleMesh& mesh, const Hai
     const Sizes sizes{longest_side(hair_box), longest_side(mesh_box)};
     const std::vector<Vec3d> roots = roots_of(hair);
     if (!(sizes.hair > 0) || !(sizes.mesh > 0) || roots.empty()) return;
-    if (share_near(tree, roots, {0, 1}, sizes) >= 0.5) return;
+    const double distance = root_distance(tree, roots, {0, 1}, sizes);
+    if (distance <= on_surface * sizes.near({0, 1})) return;
     const std::string boxes = "its box is " + box_text(mesh_box) + ", the hair's is " + box_text(hair_box);
-    if (const auto change = helpful_change(tree, roots, sizes)) {
-        fit.warnings.push_back("the hair does not grow on it, but would if it were " + change_text(*change) + "; " +
-                               boxes + "; bring both to one unit and frame");
+    if (const auto change = helpful_change(tree, roots, sizes, distance)) {
+        fit.warnings.push_back("the hair's roots are not on it, but would be if it were " + change_text(*change) +
+                               "; " + boxes + "; bring both to one unit and frame");
         return;
     }
+    if (std::isfinite(distance)) return;  // the hair grows on it
     const double ratio = sizes.mesh / sizes.hair;
     if (ratio >= odd_size || ratio <= 1 / odd_size)
         fit.warnings.push_back("it is " + short_number(std::round(ratio > 1 ? ratio : 1 / ratio)) + " times " +

@@ -25,12 +25,12 @@ struct MeshFit {
 /// Warns where
 /// - at least half of the points are inside the mesh: in a closed one A is 0 there; inside an open one (a head that ends
 ///   at the neck) is where it winds round a point by more than a half;
-/// - less than half of the roots lie near the surface (within 2 % of the longest side of the hair's box, or 0.2 % of the
-///   mesh's), and nine in ten would if the mesh were turned by 90 degrees about x (z-up for y-up) or scaled by a usual
-///   factor of units, or both;
-/// - or, where no such change helps, the mesh is 30 times larger or smaller than the hair, or farther from it than
-///   either is large.
-/// A mesh with half of the roots on its surface has the right unit and frame, whatever its size.
+/// - the roots are not on the surface, and would be four times nearer (and near it, within 2 % of the longest side of the
+///   hair's box, or 0.2 % of the mesh's) if the mesh were turned by 90 degrees about x (z-up for y-up) or scaled by a
+///   usual factor of units, or both. The median of the roots counts; they are on the surface within a tenth of "near";
+/// - or, where no such change helps and the roots are not near, the mesh is 30 times larger or smaller than the hair, or
+///   farther from it than either is large.
+/// A mesh near the roots has the right unit, whatever its size.
 ///
 ///   mesh:   oriented (mesh_orientation.h)
 ///   closed: whether it encloses a volume (MeshTopology::closed)
