@@ -116,7 +116,7 @@ void add_scene_options(CLI::App& command, RenderOptions& options) {
         .add_option("--occluder", request.bake.occluder,
                     "mesh that blocks light; with a result: the path of its occluder")
         ->type_name("FILE");
-    command.add_option("--mesh", request.mesh, "OBJ file shown with the hair (a head)")->type_name("FILE");
+    command.add_option("--mesh", request.mesh, "mesh shown with the hair (a head)")->type_name("FILE");
     command.add_option("--preset", options.preset, "without a result: preset of the bake")
         ->type_name("NAME")
         ->default_str(std::string(default_preset));

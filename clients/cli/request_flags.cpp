@@ -93,9 +93,9 @@ void naming_flags(const RequestFlags& flags, const Body& body) try {
 
 void add_request_flags(CLI::App& command, RequestFlags& flags, const std::string& environment_help) {
     command.add_option("--env", flags.environment, environment_help)->type_name("FILE");
-    command.add_option("--occluder", flags.occluder, "mesh (OBJ) that stops light completely: the head")
+    command.add_option("--occluder", flags.occluder, "mesh that stops light completely: the head")
         ->type_name("FILE");
-    command.add_option("--receiver", flags.receiver, "mesh (OBJ) on which the hair's shadow is baked too")
+    command.add_option("--receiver", flags.receiver, "mesh on which the hair's shadow is baked too")
         ->type_name("FILE");
     command.add_option("--preset", flags.preset, "default, draft, final, paper or v1 (see hairbake presets)")
         ->type_name("NAME")

@@ -110,4 +110,14 @@ Matrix3 rgb_conversion(const Chromaticities& from, const Chromaticities& to) {
     return inverse(to_xyz(to)) * adaptation(from, to) * to_xyz(from);
 }
 
+Vec3d luminance_weights(const Chromaticities& primaries) {
+    HAIRBAKE_ASSERT(fault_of(primaries).empty());
+    return to_xyz(primaries)[1];
+}
+
+Matrix3 rgb_from_xyz(const Chromaticities& primaries) {
+    HAIRBAKE_ASSERT(fault_of(primaries).empty());
+    return inverse(to_xyz(primaries));
+}
+
 }  // namespace hairbake

@@ -38,4 +38,15 @@ std::string fault_of(const Chromaticities& primaries);
 /// negative values. Both must have no fault. Thread-safe.
 std::array<Vec3d, 3> rgb_conversion(const Chromaticities& from, const Chromaticities& to);
 
+/// The share of red, green and blue in the luminance Y of colours of these primaries; the three add up to 1. The
+/// primaries must have no fault.
+Vec3d luminance_weights(const Chromaticities& primaries);
+
+/// The matrix (rows) from CIE XYZ to linear RGB of these primaries, whose white (1, 1, 1) has Y = 1. No adaptation of the
+/// white. The primaries must have no fault.
+std::array<Vec3d, 3> rgb_from_xyz(const Chromaticities& primaries);
+
+/// Primaries of Radiance pictures that name none (src/common/color.h of Radiance).
+inline constexpr Chromaticities radiance_chromaticities{.640f, .330f, .290f, .600f, .150f, .060f, 1 / 3.f, 1 / 3.f};
+
 }  // namespace hairbake

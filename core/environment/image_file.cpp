@@ -19,6 +19,7 @@
 #include "core/environment/image_header.h"
 #include "core/environment/image_kinds.h"
 #include "core/environment/image_layers.h"
+#include "core/environment/subsampled_exr.h"
 
 namespace hairbake {
 namespace {
@@ -71,6 +72,7 @@ struct Source {
     std::string format;
     std::unique_ptr<FileBehindHeader> behind;  // outlives the input
     std::unique_ptr<OIIO::ImageInput> input;
+    std::optional<SubsampledExr> subsampled;  // read instead of the input
     int part = 0;
 
     AxisOrder order() const { return behind ? behind->header().order : AxisOrder{}; }
@@ -104,6 +106,23 @@ void recognise(Source& source) {
     if (header) source.behind = std::make_unique<FileBehindHeader>(source.file.string(), *std::move(header));
 }
 
+// The header in the form in which OpenImageIO would give it.
+OIIO::ImageSpec spec_of(const SubsampledExr& file) {
+    const SubsampledExr::Window data = file.data_window(), display = file.display_window();
+    OIIO::ImageSpec spec(data.width, data.height, 3, OIIO::TypeDesc::HALF);
+    spec.x = data.x;
+    spec.y = data.y;
+    spec.full_x = display.x;
+    spec.full_y = display.y;
+    spec.full_width = display.width;
+    spec.full_height = display.height;
+    if (const auto xy = file.chromaticities())
+        spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), xy->data());
+    if (file.is_cube()) spec.attribute("textureformat", "CubeFace Environment");
+    if (file.is_latlong()) spec.attribute("textureformat", "LatLong Environment");
+    return spec;
+}
+
 void open(Source& source, OIIO::ImageSpec& spec) {
     source.input = OIIO::ImageInput::create(source.format);
     if (!source.input) throw Error(ErrorKind::internal, "OpenImageIO has no reader for " + source.format);
@@ -112,10 +131,11 @@ void open(Source& source, OIIO::ImageSpec& spec) {
     if (source.behind) source.input->set_ioproxy(source.behind.get());
     if (source.input->open(source.file.string(), spec, config)) return;
     const std::string reason = source.input->geterror();
-    if (reason.find("Subsampled") != std::string::npos)
-        source.fail(
-            "it stores luminance and chroma (Y, RY, BY), chroma in fewer pixels, which is not read; write it "
-            "again as RGB");
+    if (reason.find("Subsampled") != std::string::npos) {
+        source.subsampled.emplace(source.file);
+        spec = spec_of(*source.subsampled);
+        return;
+    }
     source.fail("not a readable image: " + reason);
 }
 
@@ -240,8 +260,16 @@ struct ChannelRange {
     int count() const { return end - begin; }
 };
 
-bool read_rows(const Source& source, const OIIO::ImageSpec& spec, ChannelRange channels, int begin, int end,
+bool read_rows(Source& source, const OIIO::ImageSpec& spec, ChannelRange channels, int begin, int end,
                std::vector<float>& rows) {
+    if (source.subsampled) {
+        for (int row = begin; row < end; ++row) {
+            const std::vector<float>& values = source.subsampled->read_row(row);
+            std::copy(values.begin(), values.end(),
+                      rows.begin() + static_cast<std::ptrdiff_t>(row - begin) * 3 * spec.width);
+        }
+        return true;
+    }
     if (spec.tile_width > 0)
         return source.input->read_tiles(source.part, 0, spec.x, spec.x + spec.width, spec.y + begin, spec.y + end, 0, 1,
                                         channels.begin, channels.end, OIIO::TypeDesc::FLOAT, rows.data());
@@ -260,7 +288,7 @@ void place_row(const OIIO::ImageSpec& spec, const std::array<int, 3>& channels, 
 }
 
 // Pixels are written piece by piece: a declared size without data reserves addresses, but no memory.
-void read_pixels(const Source& source, const OIIO::ImageSpec& spec, std::array<int, 3> channels, Progress& progress,
+void read_pixels(Source& source, const OIIO::ImageSpec& spec, std::array<int, 3> channels, Progress& progress,
                  ImageFile& image) {
     const auto [lowest, highest] = std::minmax_element(channels.begin(), channels.end());
     const ChannelRange range{*lowest, *highest + 1};
@@ -275,7 +303,7 @@ void read_pixels(const Source& source, const OIIO::ImageSpec& spec, std::array<i
         progress.check();
         const int end = std::min(spec.height, begin + step);
         // Some readers (TIFF cut short) report success and leave an error behind.
-        if (!read_rows(source, spec, range, begin, end, rows) || source.input->has_error())
+        if (!read_rows(source, spec, range, begin, end, rows) || (!source.subsampled && source.input->has_error()))
             source.fail("rows " + std::to_string(begin) + " to " + std::to_string(end - 1) +
                         " cannot be decoded: " + source.input->geterror());
         for (int row = begin; row < end; ++row) {
@@ -296,8 +324,36 @@ struct OpenedImage {
     Source source;
     OIIO::ImageSpec spec;
     std::array<int, 3> channels{};
-    ImageFile image;  ///< without pixels
+    bool luminance_chroma = false;  ///< the channels are Y, RY and BY
+    ImageFile image;                ///< without pixels
 };
+
+/// Which channels are read, in which part of the file.
+void choose_channels(OpenedImage& opened) {
+    Source& source = opened.source;
+    if (source.subsampled) {
+        opened.channels = {0, 1, 2};
+        return;
+    }
+    const ChosenLayer layer = choose_layer(parts_of(source, opened.image), source.format == "openexr");
+    source.part = layer.part;
+    opened.channels = layer.channels;
+    opened.luminance_chroma = layer.luminance_chroma;
+    opened.image.warnings.insert(opened.image.warnings.end(), layer.warnings.begin(), layer.warnings.end());
+    if (!source.input->seek_subimage(layer.part, 0))
+        source.fail("part " + std::to_string(layer.part) + " cannot be read");
+    opened.spec = source.input->spec();
+}
+
+/// Y, RY and BY of full size to RGB: R = (RY + 1) Y, B = (BY + 1) Y, and G so that the luminance is Y (OpenEXR's
+/// technical introduction, "Luminance/Chroma Images").
+void take_luminance_chroma(const ImageFile& image, std::vector<Vec3f>& pixels) {
+    const Vec3d weights = luminance_weights(image.chromaticities.value_or(default_chromaticities()));
+    for (Vec3f& p : pixels) {
+        const double y = p.x, red = (double{p.y} + 1) * y, blue = (double{p.z} + 1) * y;
+        p = Vec3f(Vec3d(red, (y - weights.x * red - weights.z * blue) / weights.y, blue));
+    }
+}
 
 OpenedImage open_image(const std::filesystem::path& file, const SizeCheck& check) {
     OpenedImage opened;
@@ -311,13 +367,7 @@ OpenedImage open_image(const std::filesystem::path& file, const SizeCheck& check
     }
     recognise(source);
     open(source, spec);
-    const ChosenLayer layer = choose_layer(parts_of(source, image), source.format == "openexr");
-    source.part = layer.part;
-    opened.channels = layer.channels;
-    image.warnings.insert(image.warnings.end(), layer.warnings.begin(), layer.warnings.end());
-    if (!source.input->seek_subimage(layer.part, 0))
-        source.fail("part " + std::to_string(layer.part) + " cannot be read");
-    spec = source.input->spec();
+    choose_channels(opened);
     check_size(source, spec, check);
     check_tiles(source, spec);
     check_placement(source, spec);
@@ -346,11 +396,12 @@ ImageFile read_image_file(const std::filesystem::path& file, const SizeCheck& ch
         OpenedImage opened = open_image(file, check);
         ImageFile image = std::move(opened.image);
         read_pixels(opened.source, opened.spec, opened.channels, progress, image);
+        if (opened.luminance_chroma) take_luminance_chroma(image, image.pixels);
         if (opened.source.behind) {
             const ImageHeader& header = opened.source.behind->header();
             put_in_order(header.order, image.width, image.height, image.pixels);
-            if (std::string warning = take_off_exposure(header, image.pixels); !warning.empty())
-                image.warnings.push_back(std::move(warning));
+            for (std::string warning : {take_off_exposure(header, image.pixels), take_xyz(header, image.pixels)})
+                if (!warning.empty()) image.warnings.push_back(std::move(warning));
         }
         return image;
     });

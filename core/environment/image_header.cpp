@@ -50,9 +50,12 @@ void take_exposure(ImageHeader& header, const Vec3d& factor, const std::string& 
 }
 
 void take_variable(ImageHeader& header, std::string_view line) {
-    if (const auto format = value_of(line, "FORMAT"); format && *format != "32-bit_rle_rgbe")
-        fail("the header's FORMAT is " + format->substr(0, 60) + "; allowed is 32-bit_rle_rgbe" +
-             (*format == "32-bit_rle_xyze" ? " (ra_xyze -r of Radiance converts CIE XYZ to RGB)" : ""));
+    if (const auto format = value_of(line, "FORMAT")) {
+        header.xyz = *format == "32-bit_rle_xyze";
+        if (!header.xyz && *format != "32-bit_rle_rgbe")
+            fail("the header's FORMAT is " + format->substr(0, 60) +
+                 "; allowed are 32-bit_rle_rgbe and 32-bit_rle_xyze");
+    }
     if (const auto text = value_of(line, "EXPOSURE")) {
         const double exposure = numbers<1>(*text, "EXPOSURE")[0];
         take_exposure(header, Vec3d(exposure), "EXPOSURE");
@@ -126,6 +129,7 @@ ImageHeader read_radiance_header(std::string_view start, std::uintmax_t file_byt
     const auto line = take_line(start, place);
     if (!line) fail("the header has no line of the size");
     const Resolution size = read_resolution(*line);
+    if (header.xyz) header.primaries = radiance_chromaticities;  // of the RGB that the XYZ become
     header.order = size.order;
     header.data_begin = place;
     refuse_old_runs(start, header, size, file_bytes);
@@ -178,6 +182,20 @@ std::string take_off_exposure(const ImageHeader& header, std::vector<Vec3f>& pix
     text << "the pixels were divided by the header's exposure and colour correction (" << e.x << ' ' << e.y << ' '
          << e.z << "), which gives the radiance";
     return text.str();
+}
+
+std::string take_xyz(const ImageHeader& header, std::vector<Vec3f>& pixels) {
+    if (!header.xyz) return {};
+    constexpr double lumens_a_watt = 179;  // WHTEFFICACY of Radiance
+    const auto matrix = rgb_from_xyz(radiance_chromaticities);
+    for (Vec3f& p : pixels) {
+        const Vec3d xyz = Vec3d(p) / lumens_a_watt;
+        p = {static_cast<float>(dot(matrix[0], xyz)), static_cast<float>(dot(matrix[1], xyz)),
+             static_cast<float>(dot(matrix[2], xyz))};
+    }
+    return "the file holds CIE XYZ in candelas: they were converted to RGB of Radiance's primaries in watts (179 "
+           "lumens "
+           "a watt)";
 }
 
 }  // namespace hairbake

@@ -29,6 +29,7 @@ struct ImageHeader {
     /// Values of the pixels are radiance times this, per channel (product of EXPOSURE and COLORCORR).
     Vec3d exposure{1, 1, 1};
     std::optional<Chromaticities> primaries;
+    bool xyz = false;  ///< the pixels are CIE XYZ in candelas per square metre
 };
 
 /// Reads the header of a Radiance HDR file (format page of Radiance, "Picture file format").
@@ -48,5 +49,10 @@ void put_in_order(const AxisOrder& order, int width, int height, std::vector<Vec
 
 /// Divides the pixels by the header's exposure. Returns a warning that says so, empty where there was nothing to do.
 std::string take_off_exposure(const ImageHeader& header, std::vector<Vec3f>& pixels);
+
+/// Turns pixels of CIE XYZ into radiance in RGB of Radiance's primaries, as ra_xyze of Radiance does: 179 candelas per
+/// square metre are 1 watt per steradian and square metre. Returns a warning that says so, empty where there was nothing
+/// to do.
+std::string take_xyz(const ImageHeader& header, std::vector<Vec3f>& pixels);
 
 }  // namespace hairbake

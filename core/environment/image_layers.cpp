@@ -12,11 +12,13 @@ using Channels = std::array<int, 3>;
 
 struct Layer {
     int part = 0;
-    std::string name;             // "ViewLayer.Combined"; empty for channels without a prefix
-    std::vector<int> members;     // channels
-    Channels colors{-1, -1, -1};  // red, green, blue
-    int luminance = -1;           // Y
-    bool has_chroma = false;      // RY or BY
+    std::string name;                       // "ViewLayer.Combined"; empty for channels without a prefix
+    std::vector<int> members;               // channels
+    Channels colors{-1, -1, -1};            // red, green, blue
+    int luminance = -1;                     // Y
+    int red_chroma = -1, blue_chroma = -1;  // RY, BY
+    bool has_chroma() const { return red_chroma >= 0 || blue_chroma >= 0; }
+    bool is_luminance_chroma() const { return luminance >= 0 && red_chroma >= 0 && blue_chroma >= 0; }
     bool is_color() const {
         return std::all_of(colors.begin(), colors.end(), [](int c) { return c >= 0; });
     }
@@ -67,7 +69,8 @@ void add_channel(Layer& layer, int index, const std::string& channel) {
     for (std::size_t k = 0; k < names.size(); ++k)
         if ((letter == names[k][0] || letter == names[k][1]) && layer.colors[k] < 0) layer.colors[k] = index;
     if (letter == "y" && layer.luminance < 0) layer.luminance = index;
-    layer.has_chroma |= letter == "ry" || letter == "by";
+    if (letter == "ry" && layer.red_chroma < 0) layer.red_chroma = index;
+    if (letter == "by" && layer.blue_chroma < 0) layer.blue_chroma = index;
 }
 
 /// A part that is named like its channels' prefix says nothing more; one with a name of its own names the layer.
@@ -153,7 +156,8 @@ void describe(const Layer& layer, std::size_t layer_count, const ImagePart& part
 Channels without_names(std::span<const ImagePart> parts, bool names_are_known, const Layer& layer,
                        std::vector<std::string>& warnings) {
     const std::vector<std::string>& channels = parts[layer.part].channels;
-    if (layer.has_chroma) refuse(parts, " (luminance and chroma, which are not read: write the file again as RGB)");
+    if (layer.has_chroma())
+        refuse(parts, " (luminance and chroma need all of Y, RY and BY: write the file again as RGB)");
     if (layer.luminance >= 0 && layer.members.size() <= 2) {
         warnings.push_back("the image has no colour: it was taken as grey");
         return {layer.luminance, layer.luminance, layer.luminance};
@@ -178,7 +182,12 @@ ChosenLayer choose_layer(std::span<const ImagePart> parts, bool names_are_known)
     if (colors.empty() && others.empty()) refuse(parts, " (data, not light)");
     const Layer& layer = prefer(colors.empty() ? others : colors, chosen.warnings);
     chosen.part = layer.part;
-    chosen.channels = layer.is_color() ? layer.colors : without_names(parts, names_are_known, layer, chosen.warnings);
+    chosen.luminance_chroma = names_are_known && !layer.is_color() && layer.is_luminance_chroma();
+    if (chosen.luminance_chroma)
+        chosen.channels = {layer.luminance, layer.red_chroma, layer.blue_chroma};
+    else
+        chosen.channels =
+            layer.is_color() ? layer.colors : without_names(parts, names_are_known, layer, chosen.warnings);
     describe(layer, layers.size(), parts[layer.part], chosen);
     return chosen;
 }

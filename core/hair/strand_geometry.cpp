@@ -7,23 +7,43 @@
 
 #include "core/base/bounds.h"
 #include "core/base/error.h"
+#include "core/base/short_number.h"
 
 namespace hairbake {
 namespace {
 
+[[noreturn]] void refuse_width(const std::string& place, const std::string& found) {
+    throw Error(ErrorKind::bad_input,
+                "the strand width at " + place + " is " + found +
+                    "; it must be positive and finite (0 where a strand ends in a point): give strand.width (--width), "
+                    "the strand's diameter in the model's unit",
+                "strand.width");
+}
+
+/// Gives the vertices of width 0 a small one. Throws where a strand has no other.
+void fill_tapers(const HairModel& model, std::vector<float>& widths) {
+    for (std::size_t s = 0; s < model.strand_count(); ++s) {
+        const auto first = widths.begin() + model.strand_begin[s], end = widths.begin() + model.strand_begin[s + 1];
+        if (std::find(first, end, 0.0f) == end) continue;
+        const float least = least_width * *std::max_element(first, end);
+        if (!(least > 0)) refuse_width("all vertices of strand " + std::to_string(s), "0");
+        std::replace(first, end, 0.0f, least);
+    }
+}
+
 std::vector<float> resolve_widths(const HairModel& model, const StrandSettings& settings) {
     std::vector<float> widths(model.vertex_count());
+    bool any_zero = false;
     for (std::size_t i = 0; i < widths.size(); ++i) {
         const double from_file = model.thickness.empty() ? model.default_thickness : model.thickness[i];
         const double width = settings.width.value_or(from_file) * settings.width_scale;
         widths[i] = static_cast<float>(width);
-        if (!(widths[i] > 0) || !std::isfinite(widths[i]))
-            throw Error(ErrorKind::bad_input,
-                        "the strand width at " + place_of_point(model, i) + " is " + std::to_string(width) +
-                            "; it must be positive and finite: give strand.width (--width), the strand's diameter in "
-                            "the model's unit",
-                        "strand.width");
+        const bool tapered = width == 0 && !settings.width && !model.thickness.empty();
+        any_zero = any_zero || tapered;
+        if (!tapered && (!(widths[i] > 0) || !std::isfinite(widths[i])))
+            refuse_width(place_of_point(model, i), short_number(width));
     }
+    if (any_zero) fill_tapers(model, widths);
     return widths;
 }
 

@@ -50,10 +50,15 @@ inline constexpr float own_arc_widths = 8;
 /// segments have no length.
 OwnSegments own_segments(const StrandGeometry& strands, std::uint32_t v);
 
+/// A strand may end in a point: where the file's width is 0, the vertex has this share of its strand's largest width. So
+/// every width is above 0, and the shadow of a tapered segment is wrong by at most a thousandth of the strand's.
+inline constexpr float least_width = 1e-3f;
+
 /// Applies `settings` to `model`. A segment is degenerate when its length is zero or below 1e-6 of the longest side
 /// of the bounds.
 /// Throws Error(bad_input) naming strand and vertex:
-/// - for a width that is not positive and finite (the message asks for strand.width), or an opacity outside [0, 1];
+/// - for a width that is negative or not finite, a strand without any width above 0 (the message asks for
+///   strand.width), or an opacity outside [0, 1];
 /// - for the point farthest out, where more than half of the segments with a length are degenerate and half of the
 ///   points lie within 1 % of the bounds' longest side from the middle.
 StrandGeometry make_strand_geometry(const HairModel& model, const StrandSettings& settings);

@@ -61,15 +61,24 @@ Json environment_input(const EnvironmentMap& map) {
     return block;
 }
 
-Json occluder_input(const MeshFacts& mesh) {
-    return {{"positions", mesh.positions},
+Json receiver_input(const MeshFacts& mesh) {
+    return {{"format", mesh.format},
+            {"positions", mesh.positions},
+            {"faces", mesh.faces},
+            {"concave_faces", mesh.concave_faces},
+            {"crossing_faces", mesh.crossing_faces},
             {"triangles", mesh.triangles},
-            {"closed", mesh.topology.closed},
-            {"open_edges", mesh.topology.open_edges},
-            {"irregular_edges", mesh.topology.irregular_edges}};
+            {"turned_triangles", mesh.turned_triangles}};
 }
 
-Json receiver_input(const MeshFacts& mesh) { return {{"positions", mesh.positions}, {"triangles", mesh.triangles}}; }
+Json occluder_input(const MeshFacts& mesh) {
+    Json block = receiver_input(mesh);
+    block.update({{"closed", mesh.topology.closed},
+                  {"open_edges", mesh.topology.open_edges},
+                  {"irregular_edges", mesh.topology.irregular_edges},
+                  {"hair_vertices", {{"looked_at", mesh.vertices_looked_at}, {"inside", mesh.vertices_inside}}}});
+    return block;
+}
 
 Json inputs(const InputFacts& facts) {
     Json block = Json::object();

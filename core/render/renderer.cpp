@@ -6,6 +6,7 @@
 
 #include "core/base/assert.h"
 #include "core/base/parallel.h"
+#include "core/environment/environment_filter.h"
 #include "core/render/pixel_samples.h"
 
 namespace hairbake {
@@ -85,12 +86,7 @@ private:
     }
 
     Vec3d background(const Vec3d& direction) const {
-        if (!scene_.background) return {};
-        const EnvironmentMap& map = *scene_.background;
-        const MapPoint point = point_of(map, direction);
-        const int x = std::clamp(static_cast<int>(point.x), 0, map.width - 1);
-        const int y = std::clamp(static_cast<int>(point.y), 0, map.height - 1);
-        return Vec3d(map.pixels[static_cast<std::size_t>(y) * map.width + x]);
+        return scene_.background ? filtered_radiance(*scene_.background, direction) : Vec3d();
     }
 
     /// Light through the lobes of one role, Kd or Ks applied.

@@ -25,8 +25,12 @@ struct HairFacts {
 
 /// Facts of a mesh that was read.
 struct MeshFacts {
+    std::string format;  ///< of the file
     std::size_t positions = 0, triangles = 0;
+    std::uint64_t faces = 0, concave_faces = 0, crossing_faces = 0;  ///< of the file
+    std::uint64_t turned_triangles = 0;                              ///< by orient()
     MeshTopology topology;
+    std::uint64_t vertices_looked_at = 0, vertices_inside = 0;  ///< of the hair (MeshFit)
 };
 
 /// The files that a bake read.

@@ -14,6 +14,7 @@
 #include "core/environment/environment_reader.h"
 #include "core/hair/hair_file.h"
 #include "core/mesh/mesh_file.h"
+#include "core/mesh/mesh_fit.h"
 
 namespace hairbake {
 namespace {
@@ -84,7 +85,18 @@ HairFacts facts_of(const HairModel& model) {
             bounds.high};
 }
 
-MeshFacts facts_of(const TriangleMesh& mesh) { return {mesh.positions.size(), mesh.triangles.size(), {}}; }
+MeshFacts facts_of(const MeshFile& file) {
+    MeshFacts facts;
+    facts.format = file.format;
+    facts.positions = file.mesh.positions.size();
+    facts.triangles = file.mesh.triangles.size();
+    facts.faces = file.faces;
+    facts.concave_faces = file.concave_faces;
+    facts.crossing_faces = file.crossing_faces;
+    facts.turned_triangles = file.turned_triangles;
+    facts.topology = topology_of(file.mesh);
+    return facts;
+}
 
 }  // namespace
 
@@ -126,22 +138,36 @@ void BakeInputs::read_hair_and_meshes(Progress& progress) {
     if (std::string warning = transparency_warning(*hair_, request_.strand); !warning.empty())
         warnings_.push_back(std::move(warning));
     if (request_.occluder) read_occluder();
-    if (request_.receiver) {
-        receiver_ = read_mesh(*request_.receiver);
-        facts_.receiver = facts_of(*receiver_);
-    }
+    if (request_.receiver) read_receiver();
     unchanged.check();
 }
 
+void BakeInputs::add_mesh_warnings(const char* which, const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings) warnings_.push_back(std::string("the ") + which + ": " + warning);
+}
+
 void BakeInputs::read_occluder() {
-    occluder_ = read_mesh(*request_.occluder);
-    facts_.occluder = facts_of(*occluder_);
-    const MeshTopology& topology = facts_.occluder->topology = topology_of(*occluder_);
-    if (!topology.closed)
-        warnings_.push_back("the occluder is not closed (" + shell_of(topology) +
+    MeshFile file = read_mesh_file(*request_.occluder);
+    MeshFacts& facts = facts_.occluder.emplace(facts_of(file));
+    const MeshFit fit = fit_of(file.mesh, facts.topology.closed, {hair_->positions, hair_->strand_begin});
+    facts.vertices_looked_at = fit.looked_at;
+    facts.vertices_inside = fit.inside;
+    add_mesh_warnings("occluder", file.warnings);
+    add_mesh_warnings("occluder", fit.warnings);
+    if (!facts.topology.closed)
+        warnings_.push_back("the occluder is not closed (" + shell_of(facts.topology) +
                             "): it is taken as a shell that stops light from both sides");
-    if (topology.inside_out)
-        warnings_.push_back("the occluder's triangles run clockwise seen from outside: they are turned round");
+    occluder_ = std::move(file.mesh);
+}
+
+void BakeInputs::read_receiver() {
+    MeshFile file = read_mesh_file(*request_.receiver);
+    facts_.receiver = facts_of(file);
+    if (!receiver_is_occluder()) {  // else its warnings are there already
+        add_mesh_warnings("receiver", file.warnings);
+        add_mesh_warnings("receiver", place_warnings(file.mesh, {hair_->positions, hair_->strand_begin}));
+    }
+    receiver_ = std::move(file.mesh);
 }
 
 void BakeInputs::read_sky(Progress& progress) {
@@ -155,7 +181,7 @@ void BakeInputs::read_sky(Progress& progress) {
 }
 
 bool BakeInputs::receiver_is_occluder() const {
-    return receiver_ && occluder_ && facts_.digests.at("receiver") == facts_.digests.at("occluder");
+    return request_.receiver && request_.occluder && facts_.digests.at("receiver") == facts_.digests.at("occluder");
 }
 
 const StrandGeometry& BakeInputs::strands() {

@@ -59,6 +59,9 @@ public:
 private:
     void read_hair_and_meshes(Progress& progress);
     void read_occluder();
+    void read_receiver();
+    /// which: "occluder" or "receiver"
+    void add_mesh_warnings(const char* which, const std::vector<std::string>& warnings);
     void read_sky(Progress& progress);
 
     const BakeRequest& request_;

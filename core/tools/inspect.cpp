@@ -4,6 +4,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <numeric>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,6 +16,9 @@
 #include "core/environment/environment_files.h"
 #include "core/environment/environment_reader.h"
 #include "core/hair/hair_file.h"
+#include "core/hair/strand_geometry.h"
+#include "core/mesh/mesh_file.h"
+#include "core/mesh/mesh_topology.h"
 #include "core/output/manifest.h"
 
 namespace hairbake {
@@ -23,25 +27,33 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Smallest and largest of the array, or the header's default where the file has none.
+/// Smallest, mean and largest of the array, or the header's default where the file has none.
 Json range_of(std::span<const float> values, float otherwise) {
     if (values.empty()) return {{"default", otherwise}};
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    return {{"minimum", *low}, {"maximum", *high}};
+    const double sum = std::accumulate(values.begin(), values.end(), 0.0);
+    return {{"minimum", *low}, {"mean", sum / static_cast<double>(values.size())}, {"maximum", *high}};
+}
+
+/// Facts of the widths, in the model's unit.
+Json width_facts(const HairModel& model) {
+    Json facts = range_of(model.thickness, model.default_thickness);
+    if (const auto zeros = std::count(model.thickness.begin(), model.thickness.end(), 0.0f); zeros > 0)
+        facts["vertices_of_width_0"] = zeros;
+    return facts;
 }
 
 /// The reason why a bake that takes the widths from the file will be refused; empty where it will not be.
 std::string width_warning(const HairModel& model) {
-    const auto missing = [](float width) { return !(width > 0); };
-    const std::vector<float>& widths = model.thickness;
-    const auto count = std::count_if(widths.begin(), widths.end(), missing);
-    const bool none = widths.empty() ? missing(model.default_thickness) : count == std::ssize(widths);
-    if (none) return "the model has no strand width: a bake needs strand.width (--width)";
-    if (count == 0) return "";
-    const auto first = static_cast<std::size_t>(std::find_if(widths.begin(), widths.end(), missing) - widths.begin());
-    return std::to_string(count) + " of the model's " + std::to_string(widths.size()) +
-           " vertices have no strand width, the first at " + place_of_point(model, first) +
-           ": a bake needs strand.width (--width)";
+    const bool none = model.thickness.empty() ? !(model.default_thickness > 0)
+                                              : std::ranges::all_of(model.thickness, [](float w) { return w == 0; });
+    if (none && model.vertex_count() > 0) return "the model has no strand width: a bake needs strand.width (--width)";
+    try {
+        make_strand_geometry(model, {});
+    } catch (const Error& error) {
+        if (error.field() == "strand.width") return error.what();
+    }
+    return "";
 }
 
 Json hair_facts(const fs::path& file) {
@@ -59,12 +71,34 @@ Json hair_facts(const fs::path& file) {
         const auto [low, high] = bounds_of(model.positions);
         facts["bounds"] = {{"minimum", as_array(low)}, {"maximum", as_array(high)}};
     }
-    facts["thickness"] = range_of(model.thickness, model.default_thickness);
+    facts["thickness"] = width_facts(model);
     facts["transparency"] = range_of(model.transparency, model.default_transparency);
     facts["colors"] = model.colors.empty() ? Json(as_array(model.default_color)) : Json("one a vertex");
     facts["info"] = groom.description;
     std::vector<std::string> warnings = groom.warnings;
     if (const std::string warning = width_warning(model); !warning.empty()) warnings.push_back(warning);
+    if (!warnings.empty()) facts["warnings"] = warnings;
+    return facts;
+}
+
+Json mesh_facts(const fs::path& file) {
+    const MeshFile read = read_mesh_file(file);
+    const MeshTopology topology = topology_of(read.mesh);
+    const auto [low, high] = bounds_of(read.mesh.positions);
+    std::vector<std::string> warnings;
+    for (const std::string& warning : read.warnings) warnings.push_back("the mesh: " + warning);
+    Json facts{{"kind", "mesh"},
+               {"format", read.format},
+               {"positions", read.mesh.positions.size()},
+               {"faces", read.faces},
+               {"concave_faces", read.concave_faces},
+               {"crossing_faces", read.crossing_faces},
+               {"triangles", read.mesh.triangles.size()},
+               {"turned_triangles", read.turned_triangles},
+               {"closed", topology.closed},
+               {"open_edges", topology.open_edges},
+               {"irregular_edges", topology.irregular_edges},
+               {"bounds", {{"minimum", as_array(low)}, {"maximum", as_array(high)}}}};
     if (!warnings.empty()) facts["warnings"] = warnings;
     return facts;
 }
@@ -201,10 +235,14 @@ std::string inspect(const fs::path& path, Progress& progress) {
     Json facts{{"path", path.string()}};
     if (fs::is_directory(path))
         facts.update(folder_facts(path, progress));
+    else if (path.filename() == "manifest.json")
+        facts.update(result_facts(path.has_parent_path() ? path.parent_path() : "."));
     else if (find_environment_files(path).faces())
         facts.update(environment_facts(path, progress));
+    else if (is_hair_file(path))
+        facts.update(hair_facts(path));
     else
-        facts.update(is_hair_file(path) ? hair_facts(path) : environment_facts(path, progress));
+        facts.update(is_mesh_file(path) ? mesh_facts(path) : environment_facts(path, progress));
     return facts.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 

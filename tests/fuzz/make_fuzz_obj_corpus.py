@@ -15,6 +15,10 @@ SEEDS = {
     "numbers": "v +1e-3 -.5 2.\nv 1e18 -1E18 0x1\nv nan inf 1e400\nv 1 2\nv 1 2 3 0.5 0.5 0.5\n" + CORNERS + "f 1 2 3",
     "indices": CORNERS + "f 0 1 2\nf 1 2 99\nf 4294967297 1 2\nf 1 2\nf 1 1 2\nf 1//9 2//9 3//9\n",
     "tetrahedron": "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n",
+    "concave": "v 0 0 0\nv 3 0 0\nv 3 1 0\nv 1 1 0\nv 1 3 0\nv 0 3 0\nf 1 2 3 4 5 6\nf 4 5 6 1 2 3\n",
+    "crossing": CORNERS + "f 1 3 2 4\nf 1 2 3 1 4 3\n",
+    "mark": "\ufeff" + CORNERS + "f 1//1 2//1 3//1\n",
+    "turned": "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 3 1 4\n",
     "many": CORNERS + "f " + "1 2 3 4 " * 60 + "\n",
 }
 

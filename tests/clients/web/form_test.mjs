@@ -118,7 +118,7 @@ test('a bake does not begin before its mesh is sent', async () => {
         await page.locator(`input[type=radio][value="${groom}"]`).check();
         await page.getByText('Meshes and priority').click();
         await throttle(page, slow);
-        await page.getByLabel('Send an OBJ file as occluder').setInputFiles(file);
+        await page.getByLabel('Send a mesh file as occluder').setInputFiles(file);
         await page.getByRole('button', { name: 'Bake', exact: true }).click();
         const occluder = page.getByRole('combobox', { name: 'Occluder' });
         await page.locator('.problem', { hasText: 'large.obj is still being sent.' }).waitFor();

@@ -13,6 +13,8 @@
 #include "core/base/error.h"
 #include "core/hair/hair_file.h"
 #include "core/hair/hair_format_writer.h"
+#include "core/mesh/mesh_file.h"
+#include "core/sample/head_mesh.h"
 #include "tests/support/small_inputs.h"
 #include "tests/support/tfx_bytes.h"
 
@@ -96,6 +98,41 @@ TEST(Bake, AnOccluderDarkensTheHairAndTheManifestTellsWhatItIs) {
     EXPECT_FALSE(open.inputs.occluder->topology.closed);
     ASSERT_EQ(open.warnings.size(), 1u);
     EXPECT_NE(open.warnings[0].find("3 of its"), std::string::npos) << open.warnings[0];
+}
+
+// Relatives: 100 times too large and too small, z-up, and the same faults of a receiver.
+TEST(Bake, WarnsOfAMeshInAnotherUnitOrFrame) {
+    const SmallInputs inputs;
+    BakeRequest request = inputs.request();
+    request.environment.reset();
+    const std::string head = (inputs.folder / "samples" / "head.obj").string(),
+                      other = (inputs.folder / "other.obj").string();
+    const auto warnings_with = [&](const auto& change, bool as_receiver) {
+        TriangleMesh mesh = read_mesh(head);
+        for (Vec3f& p : mesh.positions) p = change(p);
+        write_obj(mesh, other);
+        request.occluder = as_receiver ? head : other;
+        request.receiver.reset();
+        if (as_receiver) request.receiver = other;
+        BakeProgress progress;
+        const BakeResult result = bake(request, 2, progress);
+        if (!as_receiver) {
+            EXPECT_GT(result.inputs.occluder->vertices_looked_at, 0u);
+        }
+        return Json(result.warnings).dump();
+    };
+    const auto larger = [](const Vec3f& p) { return p * 100.0f; };
+    const auto smaller = [](const Vec3f& p) { return p * 0.01f; };
+    const auto z_up = [](const Vec3f& p) { return Vec3f(p.x, -p.z, p.y); };
+    std::string found = warnings_with(larger, false);
+    EXPECT_NE(found.find("the occluder: the hair's roots are not on it, but would be if it were 100 times smaller"),
+              std::string::npos)
+        << found;
+    EXPECT_NE(found.find("lie inside it, where A is 0"), std::string::npos) << found;
+    EXPECT_NE(warnings_with(smaller, false).find("100 times larger"), std::string::npos);
+    EXPECT_NE(warnings_with(z_up, false).find("the mesh is z-up"), std::string::npos);
+    EXPECT_NE(warnings_with(larger, true).find("the receiver: the hair's roots are not on it"), std::string::npos);
+    EXPECT_NE(warnings_with(z_up, true).find("the mesh is z-up"), std::string::npos);
 }
 
 TEST(Bake, HairAloneBakesTransmittanceAndEnvironmentAloneMaps) {
@@ -205,8 +242,8 @@ TEST(Bake, WhatIsWrongWithTheHairsNumbersBeginsWithItsFile) {
     };
     const HairModel model = read_hair(*request.hair);
     HairModel thin = model, stray = model, tiny = model;
-    thin.thickness[3] = 0;
-    EXPECT_TRUE(refusal(thin).starts_with(*request.hair + ": the strand width at strand 0, vertex 3 is 0"))
+    thin.thickness[3] = -0.5f;
+    EXPECT_TRUE(refusal(thin).starts_with(*request.hair + ": the strand width at strand 0, vertex 3 is -0.5"))
         << refusal(thin);
     // 30 cm of hair: segments of some millimetres are far below 1e-6 * 1e9 = 1,000 units.
     stray.positions[4].x = 1e9f;

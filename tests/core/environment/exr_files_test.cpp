@@ -1,7 +1,12 @@
 // OpenEXR files as people have them.
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfRgbaFile.h>
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
+#include "core/environment/color_primaries.h"
 #include "tests/core/environment/picture_files.h"
 #include "tests/support/make_map.h"
 #include "tests/support/temporary_folder.h"
@@ -101,6 +106,89 @@ TEST(ExrFiles, TheBeautyIsFoundInAnyPartAndOfAMipMapTheFirstLevel) {
     ASSERT_TRUE(output->close());
     output.reset();  // OpenEXR keeps the end of the file until its writer is gone
     EXPECT_EQ(read_picture(mips).pixels, map.pixels);
+}
+
+/// A picture of smooth colours, as OpenEXR writes it: luminance and chroma, the chroma in a quarter of the pixels.
+void write_subsampled(const std::filesystem::path& file, int w, int h, const std::vector<Vec3f>& pixels,
+                      Imf::RgbaChannels channels) {
+    std::vector<Imf::Rgba> rgba;
+    for (const Vec3f& p : pixels) rgba.emplace_back(p.x, p.y, p.z);
+    Imf::RgbaOutputFile out(file.string().c_str(), w, h, channels);
+    out.setYCRounding(10, 10);  // bits of the mantissa: all that a half float has
+    out.setFrameBuffer(rgba.data(), 1, static_cast<std::size_t>(w));
+    out.writePixels(h);
+}
+
+std::vector<Vec3f> smooth_picture(int w, int h) {
+    std::vector<Vec3f> pixels;
+    for (int y = 0; y < h; ++y)
+        for (int x = 0; x < w; ++x)
+            pixels.emplace_back(1 + 0.01f * float(x), 2 - 0.005f * float(x) + 0.01f * float(y),
+                                0.5f + 0.01f * float(y));
+    return pixels;
+}
+
+// Relatives: luminance alone; chroma of full size, which OpenImageIO reads; other channels in fewer pixels.
+TEST(ExrFiles, LuminanceAndChromaAreRead) {
+    const TemporaryFolder folder;
+    constexpr int w = 64, h = 32;
+    const std::vector<Vec3f> pixels = smooth_picture(w, h);
+    write_subsampled(folder / "yc.exr", w, h, pixels, Imf::WRITE_YC);
+    write_subsampled(folder / "y.exr", w, h, pixels, Imf::WRITE_Y);
+    const EnvironmentMap yc = read_picture(folder / "yc.exr"), y = read_picture(folder / "y.exr");
+    ASSERT_EQ(yc.width, w);
+    const Vec3d weights = luminance_weights(default_chromaticities());
+    for (int row = 0; row < h; ++row)
+        for (int x = 0; x < w; ++x) {
+            const std::size_t i = std::size_t(row) * w + x;
+            const double luminance = dot(Vec3d(pixels[i]), weights);
+            EXPECT_NEAR(dot(Vec3d(yc.pixels[i]), weights), luminance, 0.005 * luminance);  // ten bits of half floats
+            EXPECT_NEAR(y.pixels[i].x, luminance, 0.002 * luminance);
+            // At the borders the interpolation repeats the last chroma.
+            for (const int c : {0, 1, 2})
+                if (x > 14 && x < w - 14 && row > 14 && row < h - 14) {
+                    EXPECT_NEAR(yc.pixels[i][c], pixels[i][c], 0.005 * luminance);  // green takes all errors
+                }
+        }
+    // Chroma of full size: R = (RY + 1) Y and so on.
+    OIIO::ImageSpec spec(w, h, 3, OIIO::TypeDesc::FLOAT);
+    spec.channelnames = {"BY", "RY", "Y"};
+    std::vector<float> values;
+    for (const Vec3f& p : pixels) {
+        const double luminance = dot(Vec3d(p), weights);
+        for (const double v : {(p.z - luminance) / luminance, (p.x - luminance) / luminance, luminance})
+            values.push_back(static_cast<float>(v));
+    }
+    const auto out = OIIO::ImageOutput::create("openexr");
+    ASSERT_TRUE(out->open((folder / "full.exr").string(), spec) &&
+                out->write_image(OIIO::TypeDesc::FLOAT, values.data()));
+    out->close();
+    const EnvironmentMap full = read_picture(folder / "full.exr");
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+        for (const int c : {0, 1, 2}) EXPECT_NEAR(full.pixels[i][c], pixels[i][c], 1e-5);
+    // Only half a file.
+    std::filesystem::resize_file(folder / "yc.exr", std::filesystem::file_size(folder / "yc.exr") / 2);
+    EXPECT_NE(picture_refusal(folder / "yc.exr").find("yc.exr"), std::string::npos);
+}
+
+TEST(ExrFiles, OtherChannelsInFewerPixelsAreRefusedWithTheReason) {
+    const TemporaryFolder folder;
+    Imf::Header header(16, 8);
+    header.channels().insert("R", Imf::Channel(Imf::HALF, 2, 2));
+    header.channels().insert("G", Imf::Channel(Imf::HALF));
+    header.channels().insert("B", Imf::Channel(Imf::HALF, 2, 2));
+    {
+        Imf::OutputFile out((folder / "rgb.exr").string().c_str(), header);
+        std::vector<half> zeros(16 * 8, half(1.0f));
+        Imf::FrameBuffer buffer;
+        for (const char* name : {"R", "B"})
+            buffer.insert(name, Imf::Slice(Imf::HALF, reinterpret_cast<char*>(zeros.data()), 2, 16, 2, 2));
+        buffer.insert("G", Imf::Slice(Imf::HALF, reinterpret_cast<char*>(zeros.data()), 2, 32));
+        out.setFrameBuffer(buffer);
+        out.writePixels(8);
+    }
+    EXPECT_NE(picture_refusal(folder / "rgb.exr").find("fewer pixels"), std::string::npos)
+        << picture_refusal(folder / "rgb.exr");
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ TEST(ImageLayers, FilesWithoutColoursAreRefusedByTheirChannels) {
               "");
     EXPECT_NE(layer_refusal({{"", {"X", "Y", "Z"}}}), "") << "CIE XYZ, or vectors";
     EXPECT_NE(layer_refusal({{"", {"A"}}}), "");
-    EXPECT_NE(layer_refusal({{"", {"BY", "RY", "Y"}}}).find("chroma"), std::string::npos);
+    EXPECT_NE(layer_refusal({{"", {"BY", "Y"}}}).find("chroma"), std::string::npos);
     EXPECT_NE(layer_refusal({{"depth", {"Z"}}, {"motion", {"u", "v"}}}), "");
 }
 
@@ -82,6 +82,16 @@ TEST(ImageLayers, LuminanceAndSingleChannelsAreGrey) {
     EXPECT_EQ(chosen({{"", {"A", "Y"}}}).channels, (Channels{1, 1, 1}));
     EXPECT_EQ(chosen({{"", {"R"}}}).channels, (Channels{0, 0, 0}));
     EXPECT_NE(joined(chosen({{"", {"Y"}}}).warnings).find("grey"), std::string::npos);
+}
+
+// Relatives: only one of the two chroma channels, chroma in a layer with a name, chroma beside colours.
+TEST(ImageLayers, LuminanceAndChromaAreReadTogether) {
+    const ChosenLayer plain = chosen({{"", {"BY", "RY", "Y"}}});
+    EXPECT_TRUE(plain.luminance_chroma);
+    EXPECT_EQ(plain.channels, (Channels{2, 1, 0}));
+    EXPECT_EQ(chosen({{"", {"beauty.BY", "beauty.RY", "beauty.Y", "depth.Z"}}}).channels, (Channels{2, 1, 0}));
+    EXPECT_NE(layer_refusal({{"", {"RY", "Y"}}}).find("Y, RY and BY"), std::string::npos);
+    EXPECT_FALSE(chosen({{"", {"B", "BY", "G", "R", "RY", "Y"}}}).luminance_chroma);
 }
 
 TEST(ImageLayers, WithoutNamesTheFirstThreeChannelsAreColours) {

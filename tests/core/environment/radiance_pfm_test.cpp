@@ -88,10 +88,39 @@ TEST(RadianceFiles, PrimariesAreRead) {
     EXPECT_TRUE(warns(map, "primaries were not used"));
 }
 
+/// A file of 16 x 8 equal pixels.
+std::string one_colour(const std::string& variables, const std::string& pixel) {
+    std::string bytes = "#?RADIANCE\n" + variables + "\n-Y 8 +X 16\n";
+    for (int i = 0; i < 8 * 16; ++i) bytes += pixel;
+    return bytes;
+}
+
+// The pixel (64, 64, 64, 136) is 64.5 / 256 * 2^8 = 64.5 for each of X, Y and Z (or 64, by the reader's rounding):
+// the white of Radiance's primaries, so R = G = B = 64.5 / 179. Relatives: an exposure, and the primaries that name
+// themselves.
+TEST(RadianceFiles, XyzIsConvertedToRadiance) {
+    const TemporaryFolder folder;
+    const std::string pixel("\x40\x40\x40\x88", 4);
+    save_picture(folder / "xyze.hdr", one_colour("FORMAT=32-bit_rle_xyze\n", pixel));
+    save_picture(folder / "exposed.hdr", one_colour("FORMAT=32-bit_rle_xyze\nEXPOSURE=4\n", pixel));
+    const EnvironmentMap map = read_picture(folder / "xyze.hdr"), exposed = read_picture(folder / "exposed.hdr");
+    for (const int channel : {0, 1, 2}) {
+        EXPECT_NEAR(map.pixels[5][channel], 64.25 / 179, 0.3 / 179);
+        EXPECT_NEAR(map.pixels[5][channel], map.pixels[5][0], 1e-5);  // chromaticities are stored as floats
+        EXPECT_NEAR(exposed.pixels[5][channel], map.pixels[5][channel] / 4, 1e-6);
+    }
+    EXPECT_TRUE(warns(map, "CIE XYZ"));
+    EXPECT_TRUE(map.primaries.xy.has_value());
+    // More X than Y: red.
+    save_picture(folder / "red.hdr", one_colour("FORMAT=32-bit_rle_xyze\n", std::string("\x50\x40\x30\x88", 4)));
+    const EnvironmentMap red = read_picture(folder / "red.hdr");
+    EXPECT_GT(red.pixels[0].x, red.pixels[0].y);
+}
+
 TEST(RadianceFiles, FilesThatAreNotReadSayTheTrueReason) {
     const TemporaryFolder folder;
-    save_picture(folder / "xyze.hdr", radiance_file("FORMAT=32-bit_rle_xyze\n"));
-    EXPECT_NE(picture_refusal(folder / "xyze.hdr").find("32-bit_rle_xyze"), std::string::npos);
+    save_picture(folder / "other.hdr", radiance_file("FORMAT=32-bit_rle_spec\n"));
+    EXPECT_NE(picture_refusal(folder / "other.hdr").find("32-bit_rle_spec; allowed are"), std::string::npos);
     // Radiance's first run-length code: a pixel, and 15 times the same.
     std::string runs;
     for (int y = 0; y < height; ++y) runs += std::string("\x80\x80\x40\x81\x01\x01\x01\x0f", 8);

@@ -45,13 +45,38 @@ TEST(StrandGeometry, WidthOverridesTheFileAndWidthScaleMultipliesWhicheverHolds)
     EXPECT_EQ(make_strand_geometry(two_strands(), settings).widths[4], (0.01f + 0.001f * 4) * 0.25f);
 }
 
+// Relatives of the tip: the root, both ends, a vertex between.
+TEST(StrandGeometry, AStrandMayEndInAPointAndKeepsItsTaper) {
+    for (const std::vector<float>& widths :
+         {std::vector<float>{0.01f, 0.02f, 0}, {0, 0.02f, 0.01f}, {0, 0.02f, 0}, {0.02f, 0, 0.01f}}) {
+        HairModel model = two_strands();
+        std::copy(widths.begin(), widths.end(), model.thickness.begin());
+        StrandSettings settings;
+        settings.width_scale = 2;
+        const StrandGeometry geometry = make_strand_geometry(model, settings);
+        for (std::size_t i = 0; i < 3; ++i)
+            EXPECT_EQ(geometry.widths[i], widths[i] > 0 ? 2 * widths[i] : least_width * 0.04f) << i;
+        EXPECT_EQ(model.thickness[2], widths[2]);  // transmittance.hair has the file's widths
+    }
+}
+
+// Relatives: all strands without a width, a negative width, NaN (which the readers refuse, too).
 TEST(StrandGeometry, AsksForAWidthWhereTheFileGivesNone) {
     HairModel model = two_strands();
-    model.thickness[4] = 0;
+    model.thickness[3] = model.thickness[4] = 0;
     const auto [message, field] = refusal(model, {});
-    EXPECT_NE(message.find("strand 1, vertex 1"), std::string::npos) << message;
+    EXPECT_NE(message.find("all vertices of strand 1 is 0"), std::string::npos) << message;
     EXPECT_NE(message.find("--width"), std::string::npos) << message;
     EXPECT_EQ(field, "strand.width");
+    for (const float width : {-0.5f, std::numeric_limits<float>::quiet_NaN()}) {
+        model.thickness[3] = 1;
+        model.thickness[4] = width;
+        EXPECT_NE(refusal(model, {}).first.find("strand 1, vertex 1 is " + std::string(width < 0 ? "-0.5" : "nan")),
+                  std::string::npos)
+            << refusal(model, {}).first;
+    }
+    std::fill(model.thickness.begin(), model.thickness.end(), 0.0f);
+    EXPECT_NE(refusal(model, {}).first.find("all vertices of strand 0 is 0"), std::string::npos);
     model.thickness.clear();
     model.default_thickness = 0;
     EXPECT_NE(refusal(model, {}).first.find("--width"), std::string::npos);

@@ -1,4 +1,4 @@
-// A mesh of the request: one that has a name in the service, or an OBJ file that is sent now.
+// A mesh of the request: one that has a name in the service, or a mesh file that is sent now.
 import { html, useEffect, useState } from '../../vendor/preact.js';
 import { use_app, use_list } from '../hooks.js';
 import { short_digest, title_text } from '../name_text.js';
@@ -83,7 +83,7 @@ export function MeshField({ name, schema, value, on_change, on_wait, fault }) {
     const names = (items ?? []).map(({ path }) => `name:${path}`);
     return html`<div class="field"><label for=${id}>${title_text(name)}</label>
         <${NamedMeshes} ...${{ id, names, value, file, described, fault }} on_change=${choose} />
-        <input type="file" accept=".obj" aria-label=${`Send an OBJ file as ${name}`} onChange=${pick_first} />
+        <input type="file" accept=".obj,.ply,.glb,.gltf" aria-label=${`Send a mesh file as ${name}`} onChange=${pick_first} />
         ${job && html`<${UnfinishedUpload} job=${job} on_cancel=${drop} />`}
         <small id=${`${id}-help`}>${schema.description}</small>
         <${Cut} more=${more} />

@@ -42,7 +42,7 @@ export default function MeshesPage() {
     return html`<div>
         <p>A bake takes a mesh as <em>occluder</em>, which shadows the hair, or as <em>receiver</em>, which the hair
             shadows.</p>
-        <${UploadPanel} kind="mesh" accept=".obj" label="Drop meshes here, or pick them: OBJ"
+        <${UploadPanel} kind="mesh" accept=".obj,.ply,.glb,.gltf" label="Drop meshes here, or pick them: OBJ, PLY, glTF"
             on_stored=${() => redraw(n => n + 1)} />
         <${ProblemNote} problem=${problem} />
         ${!items && html`<${Loading} what="the names" />`}
