@@ -23,7 +23,7 @@ TEST(Manifest, TellsOfHarmonicsConesAndTheReceiver) {
     result.request.transmittance.sh_bands = 2;
     result.request.transmittance.bent_cone = true;
     result.inputs.digests["receiver"] = "ee";
-    result.inputs.receiver = MeshFacts{2, 1, {}};
+    result.inputs.receiver = MeshFacts{.format = "OBJ", .positions = 2, .triangles = 1, .topology = {}};
     test_support::transmittance_of(result).arrays.push_back({&receiver_kind(), 2, {0.25f, 0.5f, 0.75f, 1}});
     const Json manifest = Json::parse(make_manifest(result, files));
     EXPECT_EQ(manifest["transmittance"]["sh_bands"], 2);
