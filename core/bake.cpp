@@ -32,6 +32,15 @@ std::map<std::string, double> no_timings() {
     return timings;
 }
 
+std::map<std::string, InputPath> paths_of(const BakeResult& result) {
+    std::map<std::string, InputPath> paths;
+    for (const NamedInput& input : inputs_of(result.request))
+        if (result.inputs.digests.contains(input.name))
+            paths[input.name] = {input.file.string(),
+                                 std::filesystem::absolute(input.file).lexically_normal().string()};
+    return paths;
+}
+
 void run(std::span<const Stage* const> stages, const BakeOptions& options, BakeProgress& progress, BakeResult& result) {
     PhaseClock clock(progress, result.measured.timings_s);
     BakeInputs inputs(result.request, clock);
@@ -48,6 +57,7 @@ void run(std::span<const Stage* const> stages, const BakeOptions& options, BakeP
     }
     result.id = bake_id(keys, result.request);
     result.inputs = inputs.take_facts(options.keep_environment_pixels);
+    if (options.tell_paths) result.inputs.paths = paths_of(result);
     result.hair = inputs.take_hair();
 }
 

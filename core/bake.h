@@ -16,6 +16,7 @@ namespace hairbake {
 struct BakeOptions {
     int threads = 0;                       ///< 0: one per core
     bool keep_environment_pixels = false;  ///< in result.inputs.environment
+    bool tell_paths = false;               ///< of the inputs, in result.inputs.paths and the manifest
 };
 
 /// Finds out what can be known before a bake of `request` into `folder`: the request is valid, results may go to the

@@ -27,6 +27,35 @@ std::string checked(const std::string& file, const std::string& digest, const st
     return file;
 }
 
+/// Whether the input is there: a file, a folder, or the six files of a pattern.
+bool is_there(const std::string& path) {
+    if (path.find("{face}") == std::string::npos) return fs::exists(path);
+    try {
+        find_environment_files(path);
+        return true;
+    } catch (const Error&) {
+        return false;
+    }
+}
+
+/// The path of an input that the command does not name: as the bake named it, or where it was then.
+/// Throws Error(usage) naming every path that was sought.
+std::string stored_path(const StoredResult& stored, const std::string& name,
+                        const std::optional<std::string>& in_request, const std::string& need) {
+    std::vector<std::string> sought;
+    if (in_request) sought.push_back(*in_request);
+    if (const auto was = stored.absolute_paths.find(name); was != stored.absolute_paths.end())
+        if (!in_request || was->second != *in_request) sought.push_back(was->second);
+    for (const std::string& path : sought)
+        if (is_there(path)) return path;
+    const std::string flag = name == "environment" ? "--env" : "--" + name;
+    std::string text = need + ": give the file (" + flag + ")";
+    for (std::size_t i = 0; i < sought.size(); ++i) text += (i == 0 ? "; sought was " : " and ") + sought[i];
+    if (in_request && !sought.empty() && fs::path(*in_request).is_relative())
+        text += " (from " + fs::current_path().string() + ")";
+    throw Error(ErrorKind::usage, text, name);
+}
+
 /// The hair file of a result: the given one, or its own copy, or the one that it was baked from.
 std::string hair_of(const RenderRequest& request, const StoredResult& stored) {
     if (request.bake.hair) {
@@ -36,32 +65,29 @@ std::string hair_of(const RenderRequest& request, const StoredResult& stored) {
     }
     if (!stored.hair_file_digest.empty())
         return checked((fs::path(*request.result) / "transmittance.hair").string(), stored.hair_file_digest, "hair");
-    if (stored.request.hair && fs::exists(*stored.request.hair))
-        return checked(*stored.request.hair, stored.digests.at("hair"), "hair");
-    throw Error(ErrorKind::usage, *request.result + " does not hold its hair model: give the file (--hair)", "hair");
+    return checked(stored_path(stored, "hair", stored.request.hair, *request.result + " does not hold its hair model"),
+                   stored.digests.at("hair"), "hair");
 }
 
 std::string environment_of(const RenderRequest& request, const StoredResult& stored) {
-    const auto& file = request.bake.environment ? request.bake.environment : stored.request.environment;
-    if (!file || !fs::exists(*file))
-        throw Error(ErrorKind::usage,
-                    "the environment that " + *request.result +
-                        " was baked from is needed for the background, a mesh's light and every mode but baked: give "
-                        "the file (--env)",
-                    "environment");
+    const std::string file =
+        request.bake.environment
+            ? *request.bake.environment
+            : stored_path(stored, "environment", stored.request.environment,
+                          "the environment that " + *request.result +
+                              " was baked from is needed for the background, a mesh's light and every mode but baked");
     // Any environment may light a result of hair alone.
-    return !stored.digests.contains("environment") ? *file
-                                                   : checked(*file, stored.digests.at("environment"), "environment");
+    return !stored.digests.contains("environment") ? file
+                                                   : checked(file, stored.digests.at("environment"), "environment");
 }
 
 std::string occluder_of(const RenderRequest& request, const StoredResult& stored) {
-    const auto& file = request.bake.occluder ? request.bake.occluder : stored.request.occluder;
-    if (!file || !fs::exists(*file))
-        throw Error(ErrorKind::usage,
-                    "the mode reference needs the occluder that " + *request.result +
-                        " was baked with: give the file (--occluder)",
-                    "occluder");
-    return checked(*file, stored.digests.at("occluder"), "occluder");
+    const std::string file =
+        request.bake.occluder
+            ? *request.bake.occluder
+            : stored_path(stored, "occluder", stored.request.occluder,
+                          "the mode reference needs the occluder that " + *request.result + " was baked with");
+    return checked(file, stored.digests.at("occluder"), "occluder");
 }
 
 void read_sky(RenderInput& input, BakeProgress& progress) {

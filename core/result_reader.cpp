@@ -116,6 +116,13 @@ InputDigests input_digests(const Json& manifest) {
     return digests;
 }
 
+std::map<std::string, std::string> absolute_paths(const Json& manifest) {
+    std::map<std::string, std::string> paths;
+    for (const auto& [name, input] : manifest.at("inputs").items())
+        if (input.contains("absolute_path")) paths[name] = input["absolute_path"].get<std::string>();
+    return paths;
+}
+
 }  // namespace
 
 StoredResult read_result(const fs::path& folder) {
@@ -126,6 +133,7 @@ StoredResult read_result(const fs::path& folder) {
         merge_json(result.request, manifest.at("request").dump(), file.string());
         validate(result.request);
         result.digests = input_digests(manifest);
+        result.absolute_paths = absolute_paths(manifest);
         const ResultFiles files(folder, manifest);
         result.hair_file_digest = files.digest("transmittance.hair");
         read_arrays(files, result);

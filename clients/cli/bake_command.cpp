@@ -68,7 +68,7 @@ void run_bake(const BakeFlags& options) {
         const SignalWatch watch(*progress, [&] { discard_staging(options.folder); });
         check_request_file(options.request, options.folder);
         check_bake(request, options.folder);
-        result = bake(request, options.threads, *progress);
+        result = bake(request, stages_of(request), {.threads = options.threads, .tell_paths = true}, *progress);
         write_result(result, options.folder, *progress);
     }
     tell_done(result, options);

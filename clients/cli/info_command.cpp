@@ -13,7 +13,7 @@ void add_info_command(CLI::App& app, Action& action) {
         std::string path;
         bool json = false;
     };
-    CLI::App* command = app.add_subcommand("info", "Facts of a hair model, an environment or a result folder");
+    CLI::App* command = app.add_subcommand("info", "Facts of a hair model, a mesh, an environment or a result folder");
     const auto options = std::make_shared<Options>();
     command->add_option("path", options->path, "file, folder or pattern with {face}")->required()->type_name("FILE");
     command->add_flag("--json", options->json, "as JSON");

@@ -42,16 +42,18 @@ int main(int argc, char** argv) {
     hairbake::block_signals();
     CLI::App app("Bakes irradiance cube maps and per-vertex transmittance for hair.", "hairbake");
     hairbake::Action action;
+    int exit_code = static_cast<int>(hairbake::ExitCode::ok);
     app.set_version_flag("--version", "hairbake " + hairbake::version());
     app.require_subcommand(1);
     app.footer(hairbake::exit_code_help());  // every command inherits it; those that talk to a service have their own
     hairbake::add_bake_command(app, action);
     hairbake::add_info_command(app, action);
     hairbake::add_sample_command(app, action);
-    hairbake::add_compare_command(app, action);
+    hairbake::add_compare_command(app, action, exit_code);
     hairbake::add_render_command(app, action);
     hairbake::add_diff_command(app, action);
     hairbake::add_presets_command(app, action);
+    hairbake::add_completion_command(app, action);
     hairbake::add_submit_command(app, action);
     hairbake::add_status_command(app, action);
     hairbake::add_wait_command(app, action);
@@ -69,7 +71,7 @@ int main(int argc, char** argv) {
     try {
         app.parse(argc, argv);
         action();
-        return static_cast<int>(hairbake::ExitCode::ok);
+        return exit_code;
     } catch (const CLI::ParseError& error) {
         return end_parsing(error, app, arguments);
     } catch (...) {

@@ -3,12 +3,15 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "clients/cli/terminal.h"
+
 namespace hairbake {
 namespace {
 
 spdlog::logger& logger() {
     static const auto log = [] {
-        auto made = spdlog::stderr_color_mt("hairbake");
+        auto made = spdlog::stderr_color_mt(
+            "hairbake", without_colors() ? spdlog::color_mode::never : spdlog::color_mode::automatic);
         made->set_pattern("%n: %^%l%$: %v");
         return made;
     }();

@@ -4,12 +4,15 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "core/base/number_text.h"
 #include "core/base/short_number.h"
 
 namespace hairbake {
 namespace {
+
+constexpr std::string_view words_mark = "words";
 
 /// The shortest text that gives the same double.
 std::string exact(double value) {
@@ -64,14 +67,39 @@ CLI::Option* add_triple(CLI::App& command, const std::string& name, std::array<d
     return command.add_option_function<std::string>(name, take, help);
 }
 
+std::string name_with_words(const std::vector<std::string>& words) {
+    std::string name(words_mark);
+    for (const std::string& word : words) name += ' ' + word;
+    return name;
+}
+
 CLI::Validator one_of(std::vector<std::string> words) {
+    const std::string name = name_with_words(words);
     return {[words = std::move(words)](std::string& text) -> std::string {
                 if (std::find(words.begin(), words.end(), text) != words.end()) return {};
                 std::string list;
                 for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
                 return "is " + text + "; allowed is one of " + list;
             },
-            ""};
+            "", name};
+}
+
+CLI::Validator offering(const std::vector<std::string>& words) {
+    return {[](std::string&) { return std::string(); }, "", name_with_words(words)};
+}
+
+std::vector<std::string> offered_words(CLI::Option& option) {
+    std::vector<std::string> words;
+    try {
+        for (int i = 0;; ++i) {  // ends with an exception: CLI11 does not tell the number
+            const std::string name = option.get_validator(i)->get_name();
+            if (name.starts_with(std::string(words_mark) + " "))
+                for (const std::string& word : CLI::detail::split(name.substr(words_mark.size() + 1), ' '))
+                    words.push_back(word);
+        }
+    } catch (const CLI::OptionNotFound&) {
+        return words;
+    }
 }
 
 }  // namespace hairbake

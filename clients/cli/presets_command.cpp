@@ -2,7 +2,9 @@
 #include <CLI/CLI.hpp>
 
 #include "clients/cli/commands.h"
+#include "clients/cli/option_values.h"
 #include "clients/cli/output.h"
+#include "clients/cli/request_flags.h"
 #include "core/request/request_json.h"
 #include "core/request/request_presets.h"
 
@@ -41,6 +43,7 @@ void add_presets_command(CLI::App& app, Action& action) {
     const auto options = std::make_shared<Options>();
     command
         ->add_option("name", options->name, "show this preset's request in full; default: all fields at their defaults")
+        ->check(offering(preset_names()))
         ->type_name("NAME");
     command->add_flag("--schema", options->schema, "print the request's JSON schema");
     command->callback([options, &action] {

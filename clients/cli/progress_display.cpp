@@ -1,7 +1,5 @@
 #include "clients/cli/progress_display.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -9,6 +7,8 @@
 #include <mutex>
 
 #include "clients/cli/output.h"
+#include "clients/cli/terminal.h"
+#include "clients/cli/time_left.h"
 
 namespace hairbake {
 namespace {
@@ -50,8 +50,7 @@ public:
         shown_ = now;
         fraction_ = std::max(fraction_, fraction_of_whole(phases_, phase_, phase_fraction));
         const double elapsed = std::chrono::duration<double>(now - start_).count();
-        const bool known = fraction_ > 0.02 && elapsed > 0.2;
-        show({phase_, phase_fraction, fraction_, elapsed, known ? elapsed * (1 - fraction_) / fraction_ : -1});
+        show({phase_, phase_fraction, fraction_, elapsed, left_.update(elapsed, fraction_)});
     }
 
 protected:
@@ -61,10 +60,19 @@ private:
     std::vector<Phase> phases_;
     std::string phase_;
     double fraction_ = 0;
+    TimeLeft left_;
     Clock::time_point start_ = Clock::now(), shown_{};
     std::mutex mutex_;
 };
 
+/// "transmittance, 12 s left".
+std::string words_of(const Reading& reading) {
+    std::string text(reading.phase);
+    if (reading.left >= 0) text += ", " + std::to_string(static_cast<long>(reading.left + 0.99)) + " s left";
+    return text;
+}
+
+/// One line that is written again and again; it fits into the terminal's width.
 class Bar : public Display {
 public:
     using Display::Display;
@@ -72,16 +80,39 @@ public:
 
 protected:
     void show(const Reading& reading) override {
-        constexpr int width = 32;
-        const auto filled = static_cast<int>(std::lround(reading.fraction * width));
-        std::string bar(static_cast<std::size_t>(filled), '#');
-        bar.resize(width, '.');
-        std::string left;
-        if (reading.left >= 0) left = ", " + std::to_string(static_cast<long>(reading.left + 0.99)) + " s left";
-        std::fprintf(stderr, "\r[%s] %3.0f %%  %.*s%s\033[K", bar.c_str(), 100 * reading.fraction,
-                     static_cast<int>(reading.phase.size()), reading.phase.data(), left.c_str());
+        char percent[16];
+        std::snprintf(percent, sizeof percent, "%3.0f %%  ", 100 * reading.fraction);
+        const std::string words = percent + words_of(reading);
+        const int room = columns() - 1;  // a full line would make some terminals begin another one
+        constexpr int widest = 32, narrowest = 8;
+        const int width = std::min(widest, room - static_cast<int>(words.size()) - 3);
+        std::string line;
+        if (width >= narrowest) {
+            line.assign(static_cast<std::size_t>(std::lround(reading.fraction * width)), '#');
+            line.resize(static_cast<std::size_t>(width), '.');
+            line = "[" + line + "] ";
+        }
+        line = (line + words).substr(0, static_cast<std::size_t>(std::max(room, 0)));
+        std::fprintf(stderr, "\r%s\033[K", line.c_str());
         std::fflush(stderr);
     }
+};
+
+/// For a terminal without escape codes: a line for each tenth of the work.
+class PlainLines : public Display {
+public:
+    using Display::Display;
+
+protected:
+    void show(const Reading& reading) override {
+        const int tenth = static_cast<int>(10 * reading.fraction);
+        if (tenth <= tenth_) return;
+        tenth_ = tenth;
+        std::fprintf(stderr, "%d %%  %s\n", 10 * tenth, words_of(reading).c_str());
+    }
+
+private:
+    int tenth_ = 0;
 };
 
 class JsonLines : public Display {
@@ -102,7 +133,8 @@ protected:
 
 std::unique_ptr<BakeProgress> make_progress_display(const std::string& mode, const std::vector<Phase>& phases) {
     if (mode == "json") return std::make_unique<JsonLines>(phases);
-    if (mode == "auto" && isatty(STDERR_FILENO)) return std::make_unique<Bar>(phases);
+    if (mode == "auto" && understands_codes()) return std::make_unique<Bar>(phases);
+    if (mode == "auto" && is_terminal()) return std::make_unique<PlainLines>(phases);
     return std::make_unique<BakeProgress>();
 }
 

@@ -11,7 +11,8 @@
 
 namespace hairbake {
 
-/// `mode`: "auto" is a bar on standard error when that is a terminal, else nothing; "json" is one JSON object a line on
+/// `mode`: "auto" is a bar on standard error when that is a terminal (plain lines on one without escape codes, such as
+/// TERM=dumb), else nothing; "json" is one JSON object a line on
 /// standard output, and one that cannot be written is an error of report(); "none" is silent. Updates at most ten times
 /// a second, from any thread. It begins in the first of `phases`.
 std::unique_ptr<BakeProgress> make_progress_display(const std::string& mode, const std::vector<Phase>& phases);

@@ -118,9 +118,11 @@ void add_scene_options(CLI::App& command, RenderOptions& options) {
         ->type_name("FILE");
     command.add_option("--mesh", request.mesh, "mesh shown with the hair (a head)")->type_name("FILE");
     command.add_option("--preset", options.preset, "without a result: preset of the bake")
+        ->check(offering(preset_names()))
         ->type_name("NAME")
         ->default_str(std::string(default_preset));
     command.add_option("--set", options.settings, "without a result: any field of the bake (listed below)")
+        ->check(offering(field_paths()))
         ->type_name("PATH=VALUE")
         ->allow_extra_args(false);
 }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "clients/cli/messages.h"
+#include "clients/cli/option_values.h"
 #include "core/bake.h"
 #include "core/request/field_facts.h"
 #include "core/request/request_json.h"
@@ -93,23 +94,32 @@ void naming_flags(const RequestFlags& flags, const Body& body) try {
 
 void add_request_flags(CLI::App& command, RequestFlags& flags, const std::string& environment_help) {
     command.add_option("--env", flags.environment, environment_help)->type_name("FILE");
-    command.add_option("--occluder", flags.occluder, "mesh that stops light completely: the head")
-        ->type_name("FILE");
-    command.add_option("--receiver", flags.receiver, "mesh on which the hair's shadow is baked too")
-        ->type_name("FILE");
+    command.add_option("--occluder", flags.occluder, "mesh that stops light completely: the head")->type_name("FILE");
+    command.add_option("--receiver", flags.receiver, "mesh on which the hair's shadow is baked too")->type_name("FILE");
     command.add_option("--preset", flags.preset, "default, draft, final, paper or v1 (see hairbake presets)")
+        ->check(offering(preset_names()))
         ->type_name("NAME")
         ->default_str(std::string(default_preset));
     command.add_option("--request", flags.request_file, "JSON file with fields of the request")->type_name("FILE");
-    for (const FieldFlag& flag : field_flags())
+    for (const FieldFlag& flag : field_flags()) {
+        const FieldFacts facts = facts_of_field(flag.paths[0]);
         command
             .add_option_function<std::string>(
                 flag.flag, [&flags, name = flag.flag](const std::string& value) { flags.fields[name] = value; },
-                flag.help + ("; " + range_text(facts_of_field(flag.paths[0]))))
-            ->type_name("VALUE");
+                flag.help + ("; " + range_text(facts)))
+            ->check(offering(facts.words))
+            ->type_name(facts.is_list ? "LIST" : "VALUE");
+    }
     command.add_option("--set", flags.settings, "any field by its path, e.g. transmittance.seed=2 (listed below)")
+        ->check(offering(field_paths()))
         ->type_name("PATH=VALUE")
         ->allow_extra_args(false);
+}
+
+std::vector<std::string> preset_names() {
+    std::vector<std::string> names{std::string(default_preset)};
+    for (const Preset& preset : presets()) names.emplace_back(preset.name);
+    return names;
 }
 
 std::string fields_help() {

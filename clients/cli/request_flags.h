@@ -29,6 +29,9 @@ void add_request_flags(CLI::App& command, RequestFlags& flags, const std::string
 /// Throws Error(usage) when the request file lies in `folder`.
 void check_request_file(const RequestFlags& flags, const std::string& folder);
 
+/// Names of the presets, the default among them.
+std::vector<std::string> preset_names();
+
 /// "Later wins: ..." and all fields for --set, for the help of a command with these flags.
 std::string request_flags_help();
 

@@ -84,6 +84,8 @@ Json inputs(const InputFacts& facts) {
     Json block = Json::object();
     const auto add = [&](const char* name, const Json& described) {
         block[name] = {{"sha256", facts.digests.at(name)}};
+        if (const auto path = facts.paths.find(name); path != facts.paths.end())
+            block[name].update({{"path", path->second.given}, {"absolute_path", path->second.absolute}});
         block[name].update(described);
     };
     if (facts.hair) add("hair", hair_input(*facts.hair));

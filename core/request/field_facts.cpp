@@ -78,10 +78,27 @@ const Json& property_at(const Json& schema, const std::string& path) {
     return *at;
 }
 
+/// The words that the property allows; of a list, those of its items.
+std::vector<std::string> words_of(const Json& property) {
+    std::vector<std::string> words;
+    const auto add = [&](const std::vector<std::string>& more) { words.insert(words.end(), more.begin(), more.end()); };
+    for (const Json& one : property.value("anyOf", Json::array())) add(words_of(one));
+    for (const Json& one : property.value("enum", Json::array())) add({one.get<std::string>()});
+    if (property.contains("const")) add({property["const"].get<std::string>()});
+    if (is_of_type(property, "boolean")) add({"true", "false"});
+    if (is_of_type(property, "array") && property.contains("items")) add(words_of(property["items"]));
+    return words;
+}
+
 FieldFacts facts_in(const Json& schema, const std::string& path) {
     const Json& property = property_at(schema, path);
-    return {path, property.value("x-unit", ""), allowed_by(property), default_of(property),
-            property.value("description", "")};
+    return {path,
+            property.value("x-unit", ""),
+            allowed_by(property),
+            default_of(property),
+            property.value("description", ""),
+            words_of(property),
+            is_of_type(property, "array")};
 }
 
 }  // namespace

@@ -7,11 +7,13 @@
 namespace hairbake {
 
 struct FieldFacts {
-    std::string path;         ///< "transmittance.directions"
-    std::string unit;         ///< "degrees"; empty for none
-    std::string allowed;      ///< "1 to 4096", "one of exact, sh"
-    std::string standard;     ///< the default: "100", "auto", "none"
-    std::string description;  ///< a sentence or two
+    std::string path;                ///< "transmittance.directions"
+    std::string unit;                ///< "degrees"; empty for none
+    std::string allowed;             ///< "1 to 4096", "one of exact, sh"
+    std::string standard;            ///< the default: "100", "auto", "none"
+    std::string description;         ///< a sentence or two
+    std::vector<std::string> words;  ///< that are allowed: names, or true and false; of a list, those of its items
+    bool is_list = false;
 };
 
 /// All fields, in the order of to_json(), as the request's schema states them.

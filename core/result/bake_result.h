@@ -33,9 +33,15 @@ struct MeshFacts {
     std::uint64_t vertices_looked_at = 0, vertices_inside = 0;  ///< of the hair (MeshFit)
 };
 
+/// Where a file was when it was read.
+struct InputPath {
+    std::string given, absolute;  ///< as the request names it, and from the root
+};
+
 /// The files that a bake read.
 struct InputFacts {
     InputDigests digests;
+    std::map<std::string, InputPath> paths;  ///< by name as the digests; empty where the bake is not to tell
     std::optional<HairFacts> hair;
     HairFileExtras hair_extras;  ///< of the hair's file, for transmittance.hair
     std::optional<MeshFacts> occluder, receiver;

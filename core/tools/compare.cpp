@@ -62,7 +62,8 @@ Json statistics(std::span<const float> first, std::span<const float> second) {
             {"rms", rms},
             {"bias", sum / count},
             {"largest", largest},
-            {"rms_over_largest", largest > 0 ? rms / largest : rms}};
+            {"rms_over_largest", largest > 0 ? rms / largest : rms},
+            {"max_over_largest", largest > 0 ? largest_difference / largest : largest_difference}};
 }
 
 /// Number of cube maps in an array [..., 6, n, n, 3] with leading axes; 0 for any other shape.
@@ -101,12 +102,31 @@ Comparison compare_arrays(const std::string& name, const NpyArray& a, const NpyA
     return comparison;
 }
 
+/// Whether all entries of an array are statistics whose largest difference is small. A NaN compares as false.
+bool within(const Json& entries, double tolerance) {
+    return std::all_of(entries.begin(), entries.end(), [&](const Json& entry) {
+        return entry.is_object() && entry["max_over_largest"].get<double>() <= tolerance;
+    });
+}
+
+std::string verdict(const Json& report) {
+    if (report["same"].get<bool>()) return "equal";
+    char text[64];
+    const auto tolerance = report["tolerance"].get<double>();
+    std::snprintf(text, sizeof text, tolerance > 0 ? " (tolerance %g)" : "", tolerance);
+    return (report["equal"].get<bool>() ? "equal" : "different") + std::string(text);
+}
+
 }  // namespace
 
-std::string compare(const fs::path& first, const fs::path& second) {
+ComparisonReport compare(const fs::path& first, const fs::path& second, double tolerance) {
     const std::vector<std::string> in_first = arrays_of(first), in_second = arrays_of(second);
-    Json report{{"first", first.string()}, {"second", second.string()}, {"same", true}};
-    bool any_in_common = false, same = true;
+    Json report{{"first", first.string()},
+                {"second", second.string()},
+                {"tolerance", tolerance},
+                {"equal", true},
+                {"same", true}};
+    bool any_in_common = false, same = true, equal = true;
     for (const std::string& name : merged(in_first, in_second)) {
         const bool a = has(in_first, name), b = has(in_second, name);
         Comparison comparison{false, sentence(name, a ? "only in the first" : "only in the second")};
@@ -114,31 +134,33 @@ std::string compare(const fs::path& first, const fs::path& second) {
             comparison = compare_arrays(name, read_npy(first / (name + ".npy")), read_npy(second / (name + ".npy")));
         any_in_common |= a && b;
         same &= comparison.same;
-        // An array must not replace "first", "second" or "same", whatever its name in the manifest.
+        equal &= comparison.same || (tolerance > 0 && within(comparison.entries, tolerance));
+        // An array must not replace "first", "equal" and so on, whatever its name in the manifest.
         for (const auto& [key, entry] : comparison.entries.items())
             if (!report.contains(key)) report[key] = entry;
     }
     if (!any_in_common)
         throw Error(ErrorKind::bad_input, first.string() + " and " + second.string() +
                                               " have no .npy file in common; bake both with the output npy");
+    report["equal"] = equal;
     report["same"] = same;
-    return report.dump(2, ' ', false, Json::error_handler_t::replace);
+    return {report.dump(2, ' ', false, Json::error_handler_t::replace), equal};
 }
 
 std::string as_table(const std::string& report) {
     const Json object = Json::parse(report);
-    std::string table = object["first"].get<std::string>() + " and " + object["second"].get<std::string>() +
-                        (object["same"].get<bool>() ? ": all values are equal\n" : ": second minus first\n");
+    std::string table = verdict(object) + ": " + object["first"].get<std::string>() + " and " +
+                        object["second"].get<std::string>() + "; the figures are second minus first\n";
     char line[160];
-    std::snprintf(line, sizeof line, "%-16s %10s %12s %12s %13s %12s\n", "", "values", "max abs", "rms", "bias",
-                  "rms/largest");
+    std::snprintf(line, sizeof line, "%-16s %10s %12s %12s %13s %12s %12s\n", "", "values", "max abs", "rms", "bias",
+                  "rms/largest", "max/largest");
     table += line;
     const auto number = [](const Json& value) { return value.is_null() ? std::nan("") : value.get<double>(); };
     for (const auto& [name, item] : object.items()) {
         if (item.is_object())
-            std::snprintf(line, sizeof line, "%-16s %10zu %12.4e %12.4e %+13.4e %12.4e\n", name.c_str(),
+            std::snprintf(line, sizeof line, "%-16s %10zu %12.4e %12.4e %+13.4e %12.4e %12.4e\n", name.c_str(),
                           item["values"].get<std::size_t>(), number(item["max_abs"]), number(item["rms"]),
-                          number(item["bias"]), number(item["rms_over_largest"]));
+                          number(item["bias"]), number(item["rms_over_largest"]), number(item["max_over_largest"]));
         else if (item.is_string() && name != "first" && name != "second")
             std::snprintf(line, sizeof line, "%-16s %s\n", name.c_str(), item.get_ref<const std::string&>().c_str());
         else

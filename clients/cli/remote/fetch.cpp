@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "clients/cli/remote/result_manifest.h"
+#include "clients/cli/remote/result_warnings.h"
 #include "core/bake.h"
 #include "core/base/digest.h"
 
@@ -88,6 +89,7 @@ public:
         }
         move_in(manifest, files);
         result_.files = files.size() + 1;
+        result_.warnings = warnings_in(manifest);
         result_.bytes += manifest.size();
         result_.received += manifest.size();
         return result_;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "clients/cli/remote/server.h"
 
@@ -12,6 +13,7 @@ namespace hairbake {
 struct Fetched {
     std::size_t files = 0;
     std::uint64_t bytes = 0, received = 0;  ///< of the folder; of these received by this fetch
+    std::vector<std::string> warnings;      ///< of the bake's stages
 };
 
 /// Fetches the files of the bake `id` into `folder`: new, empty or an earlier result, whose files of the same digest

@@ -10,18 +10,21 @@
 #include "clients/cli/messages.h"
 #include "clients/cli/output.h"
 #include "clients/cli/remote/fetch.h"
+#include "clients/cli/remote/result_warnings.h"
 
 namespace hairbake {
 namespace {
 
 using Json = Server::Json;
 using Clock = std::chrono::steady_clock;
+constexpr std::size_t most_asked = 100;  ///< bakes whose manifest is asked for, where the result is not fetched
 
 void tell_done(const ConnectionFlags& flags, const EndedBake& bake, const std::string& folder, const Fetched& fetched,
                double seconds, const std::string& remark) {
     if (flags.json()) {
         Json line{{"event", "done"}, {"id", bake.id}};
         if (!folder.empty()) line.update({{"folder", folder}, {"received_bytes", fetched.received}});
+        line["warnings"] = fetched.warnings;
         return print_line(line.dump(-1, ' ', false, Json::error_handler_t::replace));
     }
     char took[40];
@@ -93,6 +96,7 @@ void await_bakes(const ConnectionFlags& flags, const ServerOptions& options, con
     const Clock::time_point start = Clock::now();
     std::vector<EndedBake> bakes;
     std::vector<Fetched> fetched;
+    std::size_t asked = 0;  // manifests, for their warnings alone
     bool ended = false;
     try {
         run_phase(flags, options, {{"bake", 20}, {"fetch", 3}}, [&](Server& server) {
@@ -102,7 +106,12 @@ void await_bakes(const ConnectionFlags& flags, const ServerOptions& options, con
                 bake.message = awaited.words(bake.message);
                 const std::string folder = bake.state == "done" ? awaited.folder(bake.id) : "";
                 if (!folder.empty()) check_outside(folder, awaited.inputs);
-                fetched.push_back(folder.empty() ? Fetched() : fetch_result(server, bake.id, folder));
+                Fetched& here = fetched.emplace_back();
+                if (!folder.empty())
+                    here = fetch_result(server, bake.id, folder);
+                else if (bake.state == "done" && asked++ < most_asked)
+                    here.warnings = warnings_of_bake(server, bake.id);
+                for (std::string& warning : here.warnings) warning = awaited.words(warning);
             }
         });
     } catch (const Error& error) {
@@ -110,9 +119,14 @@ void await_bakes(const ConnectionFlags& flags, const ServerOptions& options, con
         throw;
     }
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    for (std::size_t i = 0; i < bakes.size(); ++i)
-        if (bakes[i].state == "done")
-            tell_done(flags, bakes[i], awaited.folder(bakes[i].id), fetched[i], seconds, awaited.remark);
+    for (std::size_t i = 0; i < bakes.size(); ++i) {
+        if (bakes[i].state != "done") continue;
+        say_bake_warnings(bakes.size() > 1 ? bakes[i].id : "", fetched[i].warnings);
+        tell_done(flags, bakes[i], awaited.folder(bakes[i].id), fetched[i], seconds, awaited.remark);
+    }
+    if (asked > most_asked)
+        say_note("the warnings of the first " + std::to_string(most_asked) +
+                 " bakes are shown; \"hairbake wait ID\" shows others");
     judge(flags, bakes);
 }
 

@@ -20,7 +20,19 @@ struct StatusOptions {
     bool json = false;
 };
 
-/// "ID running 43 %, 12 s left; hair 0123456789ab, environment stage1/sunset"
+/// The name that a request used for an input, with its version; else the beginning of its digest; else nothing.
+std::string input_text(const Json& view, const std::string& field) {
+    const Json names = view.value("names", Json::object());
+    if (names.contains(field)) {
+        const Json& name = names[field];
+        const std::string version = name.contains("version") ? "@" + name["version"].dump() : "";
+        return plain(text_in(name, "path") + version);
+    }
+    const std::string digest = plain(text_in(view, field == "hair" ? "model" : field.c_str()));
+    return digest.substr(0, 12);
+}
+
+/// "ID running 43 %, 12 s left; "title"; hair 0123456789ab, environment stage1/sunset@2; created 2026-11-28T10:00:00Z"
 std::string line_of(const Json& view) {
     const std::string state = plain(text_in(view, "state"));
     std::string line = id_in(view, "id") + " " + state;
@@ -28,22 +40,24 @@ std::string line_of(const Json& view) {
         line += " " + std::to_string(std::lround(100 * view["fraction"].get<double>())) + " %";
     if (view.contains("seconds_left") && view["seconds_left"].is_number())
         line += ", " + std::to_string(std::lround(view["seconds_left"].get<double>())) + " s left";
-    for (const auto& [field, name] : {std::pair("model", "hair"), std::pair("environment", "environment")}) {
-        std::string value = plain(text_in(view, field)).substr(0, 12);
-        const Json names = view.value("names", Json::object());
-        if (names.contains(name)) value = plain(text_in(names[name], "path"));
-        if (!value.empty()) line += std::string("; ") + name + " " + value;
-    }
+    if (const std::string title = plain(text_in(view, "title")); !title.empty()) line += "; \"" + title + "\"";
+    for (const char* field : {"hair", "environment", "occluder", "receiver"})
+        if (const std::string input = input_text(view, field); !input.empty())
+            line += std::string("; ") + field + " " + input;
+    for (const char* time : {"created", "finished"})
+        if (const std::string text = plain(text_in(view, time)); !text.empty())
+            line += std::string("; ") + time + " " + text;
     if (view.contains("error") && view["error"].is_object()) line += ": " + plain(text_in(view["error"], "message"));
     return line;
 }
 
-/// "ID: 12 of 40 done, 26 queued, 2 running"
+/// "ID: 12 done, 26 queued, 2 running; created 2026-11-28T10:00:00Z"
 std::string batch_line(const Json& view) {
     std::string line = id_in(view, "id") + ":";
     for (const auto& [state, count] : view.at("states").items())
         if (count.get<std::int64_t>() > 0)
             line += (line.ends_with(":") ? " " : ", ") + std::to_string(count.get<std::int64_t>()) + " " + plain(state);
+    if (const std::string created = plain(text_in(view, "created")); !created.empty()) line += "; created " + created;
     return line;
 }
 

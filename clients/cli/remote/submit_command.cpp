@@ -9,6 +9,7 @@
 #include "clients/cli/option_values.h"
 #include "clients/cli/output.h"
 #include "clients/cli/remote/outcome.h"
+#include "clients/cli/remote/result_warnings.h"
 #include "clients/cli/remote/upload.h"
 #include "clients/cli/request_flags.h"
 #include "core/bake.h"
@@ -32,6 +33,7 @@ struct SubmitOptions {
 struct Job {
     BakeRequest request;
     std::string label, folder, id, state;
+    std::vector<std::string> warnings;  ///< of a bake that was done already
 };
 
 /// "groom" of a path or a name, the first digits of a digest.
@@ -46,7 +48,7 @@ std::vector<Job> make_jobs(const SubmitOptions& options) {
     for (std::size_t i = 0; i == 0 || i < options.hairs.size(); ++i) {
         RequestFlags flags = options.request;
         if (!options.hairs.empty()) flags.hair = options.hairs[i];
-        Job job{make_request(flags), "", options.folder, "", ""};
+        Job job{make_request(flags), "", options.folder, "", "", {}};
         job.label = job.request.hair.value_or(job.request.environment.value_or(""));
         if (!job.folder.empty() && options.hairs.size() > 1) {
             job.folder = std::filesystem::path(options.folder) / short_name(job.label);
@@ -91,9 +93,16 @@ void run(SubmitOptions options) {
     const ServerOptions server_settings = server_options(options.connection);
     run_phase(options.connection, server_settings, {{"digest", 1}, {"upload", 4}}, [&](Server& server) {
         inputs.send(server);
-        for (Job& job : jobs) submit(server, inputs, job, options.priority);
+        for (Job& job : jobs) {
+            submit(server, inputs, job, options.priority);
+            if (job.state == "done" && !options.wait) job.warnings = warnings_of_bake(server, job.id);
+        }
     });
-    for (const Job& job : jobs) tell_submitted(options, job);
+    for (const Job& job : jobs) {
+        for (const std::string& warning : job.warnings)
+            say_bake_warnings(jobs.size() > 1 ? job.id : "", {inputs.with_paths(warning)});
+        tell_submitted(options, job);
+    }
     if (!options.wait) return;
 
     std::vector<std::string> ids;

@@ -1,10 +1,12 @@
 // hairbake wait, hairbake fetch
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include "clients/cli/commands.h"
 #include "clients/cli/output.h"
 #include "clients/cli/remote/fetch.h"
 #include "clients/cli/remote/outcome.h"
+#include "clients/cli/remote/result_warnings.h"
 #include "core/bake.h"
 
 namespace hairbake {
@@ -38,9 +40,14 @@ void run_fetch(const FetchOptions& options) {
     Fetched fetched;
     run_phase(options.connection, server_options(options.connection), {{"fetch", 1}},
               [&](Server& server) { fetched = fetch_result(server, options.id, options.folder); });
+    say_bake_warnings("", fetched.warnings);
     if (options.connection.json())
-        print_line("{\"event\":\"done\",\"id\":" + json_string(options.id) + ",\"folder\":" +
-                   json_string(options.folder) + ",\"received_bytes\":" + std::to_string(fetched.received) + "}");
+        print_line(Server::Json{{"event", "done"},
+                                {"id", options.id},
+                                {"folder", options.folder},
+                                {"received_bytes", fetched.received},
+                                {"warnings", fetched.warnings}}
+                       .dump(-1, ' ', false, Server::Json::error_handler_t::replace));
     else
         print_line(options.folder + ": " + std::to_string(fetched.files) + " files, " + in_megabytes(fetched.bytes) +
                    ", " + in_megabytes(fetched.received) + " of it received");
@@ -64,7 +71,9 @@ void add_fetch_command(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("fetch", "Fetch the result of a bake that is done");
     const auto options = std::make_shared<FetchOptions>();
     command->add_option("id", options->id, "id of the bake")->required()->type_name("ID");
-    command->add_option("--out", options->folder, "result folder: new, empty or an earlier result")->required();
+    command->add_option("--out", options->folder, "result folder: new, empty or an earlier result")
+        ->required()
+        ->type_name("DIR");
     add_connection_flags(*command, options->connection);
     command->callback([options, &action] {
         action = [options] { with_json_failures(options->connection.progress, [&] { run_fetch(*options); }); };

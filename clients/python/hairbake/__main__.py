@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, Callable, Dict, List, Optional
 
 from ._client import Bake, Client, check_files
-from ._errors import BakeCancelled, BakeFailed, HairbakeError, OutOfResources, Refused, UsageError, words_of
+from ._errors import BakeCancelled, BakeFailed, HairbakeError, OutOfResources, Refused, UsageError, plain, words_of
 from ._fetch import check_outside, check_result_folder, prove_writable
 from ._http import identifier
 
@@ -26,6 +26,7 @@ MOVED = {"model": "fiber.model", "exponent": "fiber.kajiya_kay.exponent",
          **{name: f"environment_settings.{name}" for name in
             ("layout", "latlong", "rotation_deg", "exposure_stops", "tint", "invalid_radiance")}}
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")  #: also those that JSON does not know: .5, 1., +5
+MOST_ASKED = 100  #: bakes whose manifest is asked for, where the result is not fetched
 LIGHTING_BLOCKS = ("irradiance", "environment_settings", "fiber")  #: of the request: `rebake` may change them
 
 
@@ -47,19 +48,41 @@ def print_line(text: str) -> None:
         raise output_failure(error) from error
 
 
+def columns() -> int:
+    """Characters in a line: COLUMNS where that is a number from 1 to 10000, else the terminal's own number, else 80."""
+    text = os.environ.get("COLUMNS", "")
+    if text.isascii() and text.isdigit() and 1 <= int(text) <= 10000:
+        return int(text)
+    try:
+        return os.get_terminal_size(sys.stderr.fileno()).columns or 80
+    except OSError:
+        return 80
+
+
 class Display:
-    """A bar on a terminal, JSON lines, or nothing."""
+    """A bar on a terminal that knows escape codes, JSON lines, or nothing."""
 
     def __init__(self, mode: str) -> None:
-        self.json, self.bar = mode == "json", mode == "auto" and sys.stderr.isatty()
+        knows_codes = sys.stderr.isatty() and os.environ.get("TERM", "") not in ("", "dumb")
+        self.json, self.bar = mode == "json", mode == "auto" and knows_codes
 
     def __call__(self, stage: str, fraction: float) -> None:
         if self.json:
             self.event("progress", phase=stage, phase_fraction=round(fraction, 4))
         elif self.bar:
-            filled = round(32 * min(1.0, fraction))
-            bar = "#" * filled + "." * (32 - filled)
-            print(f"\r[{bar}] {100 * fraction:3.0f} %  {stage}\033[K", end="", file=sys.stderr, flush=True)
+            words = f"{100 * fraction:3.0f} %  {stage}"
+            room = columns() - 1  # a full line would make some terminals begin another one
+            width = min(32, room - len(words) - 3)
+            filled = round(width * min(1.0, fraction))
+            bar = f"[{'#' * filled + '.' * (width - filled)}] " if width >= 8 else ""
+            print(f"\r{(bar + words)[:max(0, room)]}\033[K", end="", file=sys.stderr, flush=True)
+
+    def warn(self, texts: List[str], bake: str = "") -> None:
+        """Prints warnings of a bake on standard error; `bake` is its id where there are several."""
+        if self.bar and texts:
+            print("\r\033[K", end="", file=sys.stderr, flush=True)
+        for text in texts:
+            print(f"hairbake: warning: {f'bake {bake}: ' if bake else ''}{text}", file=sys.stderr)
 
     def event(self, event: str, **facts: Any) -> None:
         print_line(json.dumps({"event": event, **facts}))
@@ -143,18 +166,27 @@ def tell_ended(client: Client, display: Display, bakes: List[Bake], folder_of: C
     """Fetches the bakes that are done, into folders without the `inputs`. Prints one line for each bake. Raises if some
     are not done."""
     lost = [bake for bake in bakes if bake.state != "done"]
+    asked = 0  # manifests, for their warnings alone
     for bake in bakes:
         reason = client.with_paths(bake.message)
         folder = folder_of(bake.id)
+        name = bake.id if len(bakes) > 1 else ""
         if bake.state != "done":
             display.line(f"{bake.id} {bake.state} {reason}".rstrip(), bake.state, id=bake.id, message=reason)
         elif folder:
             check_outside(folder, inputs or {})
             result = client.fetch(bake, folder)
+            warnings = [client.with_paths(text) for text in result.warnings()]
+            display.warn(warnings, name)
             display.line(f"{bake.id} done; {folder}: {result.received} bytes received", "done", id=bake.id,
-                         folder=str(folder), received_bytes=result.received)
+                         folder=str(folder), received_bytes=result.received, warnings=warnings)
         else:
-            display.line(f"{bake.id} done", "done", id=bake.id)
+            asked += 1
+            warnings = client.warnings(bake) if asked <= MOST_ASKED else []
+            display.warn(warnings, name)
+            display.line(f"{bake.id} done", "done", id=bake.id, warnings=warnings)
+    if asked > MOST_ASKED:
+        print(f"hairbake: the warnings of the first {MOST_ASKED} bakes are shown; \"wait ID\" shows others", file=sys.stderr)
     if lost:
         failed = [bake for bake in lost if bake.state == "failed"]
         words = f"{len(lost)} of {len(bakes)} bakes "
@@ -193,6 +225,8 @@ def submit(client: Client, arguments: Arguments, display: Display) -> None:
         prove_writable(target)
     bakes = [client.submit(hair, priority=arguments.priority, **request) for hair in hairs]
     for hair, bake in zip(hairs, bakes):
+        if bake.state == "done" and not (arguments.wait or targets):
+            display.warn(client.warnings(bake), bake.id if len(bakes) > 1 else "")
         if not (arguments.wait or targets) or display.json:
             display.line(f"{bake.id} {bake.state} {hair or ''}".rstrip(), "submitted", id=bake.id, state=bake.state)
     if arguments.wait or targets:
@@ -201,17 +235,38 @@ def submit(client: Client, arguments: Arguments, display: Display) -> None:
         tell_ended(client, display, ended, folders.get)
 
 
+def input_text(view: Dict[str, Any], field: str) -> str:
+    """The name that a request used for an input, with its version; else the beginning of its digest; else nothing."""
+    name = (view.get("names") or {}).get(field)
+    if isinstance(name, dict):
+        return plain(f"{name.get('path', '')}@{name['version']}" if "version" in name else name.get("path", ""))
+    return plain(view.get("model" if field == "hair" else field) or "")[:12]
+
+
+def status_text(bake: Bake) -> str:
+    """As `hairbake status` prints it: state, time left, title, inputs by name, times, the reason of a failure."""
+    view = bake.view
+    text = f"{bake.id} {bake.state}" + (f" {100 * bake.fraction:.0f} %" if bake.state == "running" else "")
+    if isinstance(view.get("seconds_left"), (int, float)):
+        text += f", {view['seconds_left']:.0f} s left"
+    text += f'; "{plain(view["title"])}"' if view.get("title") else ""
+    inputs = [(field, input_text(view, field)) for field in ("hair", "environment", "occluder", "receiver")]
+    times = [(time, plain(view.get(time) or "")) for time in ("created", "finished")]
+    text += "".join(f"; {name} {value}" for name, value in inputs + times if value)
+    return f"{text}: {bake.message}" if bake.message else text
+
+
 def status(client: Client, arguments: Arguments, display: Display) -> None:
     if arguments.batch:
         batch = client.batch(arguments.batch)
         counts = ", ".join(f"{count} {state}" for state, count in batch.states.items() if count)
-        display.line(f"{batch.id}: {counts}", "status", batch=batch.id, bakes=batch.bakes, states=batch.states)
+        created = f"; created {batch.created}" if batch.created else ""
+        display.line(f"{batch.id}: {counts}{created}", "status", batch=batch.id, bakes=batch.bakes, states=batch.states)
     bakes = [client.status(id) for id in arguments.id]
     if not bakes and not arguments.batch:
         bakes = client.list(newest=20, **({"state": arguments.state} if arguments.state else {}))
     for bake in bakes:
-        percent = f" {100 * bake.fraction:.0f} %" if bake.state == "running" else ""
-        display.line(f"{bake.id} {bake.state}{percent} {bake.message}".rstrip(), "status", bake=bake.view)
+        display.line(status_text(bake), "status", bake=bake.view)
 
 
 def wait(client: Client, arguments: Arguments, display: Display) -> None:
@@ -225,8 +280,9 @@ def wait(client: Client, arguments: Arguments, display: Display) -> None:
 
 def fetch(client: Client, arguments: Arguments, display: Display) -> None:
     result = client.fetch(arguments.id, arguments.out)
+    display.warn(result.warnings())
     display.line(f"{arguments.out}: {result.received} bytes received", "done", id=arguments.id, folder=arguments.out,
-                 received_bytes=result.received)
+                 received_bytes=result.received, warnings=result.warnings())
 
 
 def cancel(client: Client, arguments: Arguments, display: Display) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Callable, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Union
 
 from ._errors import BakeCancelled, BakeFailed, HairbakeError, Refused, UsageError, plain
-from ._fetch import Result, fetch_result
+from ._fetch import Result, fetch_result, warnings_in
 from ._http import Http, Json, identifier
 from ._upload import check_file, send_if_lacking
 
@@ -53,6 +53,7 @@ class Batch(NamedTuple):
     id: str
     bakes: int
     states: Dict[str, int]  #: number of bakes in each state
+    created: str = ""  #: when, in UTC: "2026-11-28T10:00:00Z"
 
 
 BakeOrId = Union[Bake, str]
@@ -91,7 +92,7 @@ def _batch(view: Json) -> Batch:
     counted = isinstance(states, dict) and all(isinstance(count, int) for count in states.values())
     if not isinstance(bakes, int) or not counted:
         raise Refused("the server's answer is not a batch")
-    return Batch(identifier(view.get("id")), bakes, dict(states or {}))
+    return Batch(identifier(view.get("id")), bakes, dict(states or {}), plain(view.get("created") or ""))
 
 
 def _id(bake: BakeOrId) -> str:
@@ -229,6 +230,12 @@ class Client:
             return
         if answer.status != 200:
             raise answer.refuse()
+
+    def warnings(self, bake: BakeOrId) -> List[str]:
+        """The warnings of the stages of a bake that is done, at most 100. None where the service has its manifest no
+        more."""
+        answer = self._http.ask("GET", f"/v1/bakes/{_id(bake)}/files/manifest.json")
+        return [self.with_paths(text) for text in warnings_in(answer.body)] if answer.status == 200 else []
 
     def rebake(self, environment: PathLike, *, bakes: Optional[Sequence[BakeOrId]] = None,
                replaces: Optional[PathLike] = None, name: Optional[str] = None,

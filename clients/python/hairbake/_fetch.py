@@ -18,6 +18,7 @@ from ._upload import digest_of_file
 NAME = re.compile(r"[0-9A-Za-z_-][0-9A-Za-z._-]{0,199}")
 DIGEST = re.compile(r"[0-9a-f]{64}")
 MOST_FILES = 4096
+MOST_WARNINGS = 100
 
 
 class Result(NamedTuple):
@@ -30,9 +31,24 @@ class Result(NamedTuple):
         manifest: Dict[str, Any] = json.loads((self.folder / "manifest.json").read_text(encoding="utf-8"))
         return manifest
 
+    def warnings(self) -> List[str]:
+        """The warnings of the bake's stages, at most 100."""
+        return warnings_in((self.folder / "manifest.json").read_bytes())
+
     def arrays(self) -> Dict[str, Array]:
         """By name: "transmittance", "diffuse", "specular" ..."""
         return read_arrays(self.folder)
+
+
+def warnings_in(manifest: bytes) -> List[str]:
+    """The warnings that a manifest lists, at most 100, made fit for a terminal. It is not trusted: one that is no JSON
+    object, or lists something else, has none."""
+    try:
+        whole = json.loads(manifest)
+    except (ValueError, RecursionError):
+        return []
+    warnings = whole.get("warnings") if isinstance(whole, dict) else None
+    return [plain(text) for text in warnings if isinstance(text, str)][:MOST_WARNINGS] if isinstance(warnings, list) else []
 
 
 class Listed(NamedTuple):

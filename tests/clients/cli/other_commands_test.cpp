@@ -22,7 +22,7 @@ TEST(Program, EveryCommandsHelpHasItsOwnExitCodesOnce) {
         for (std::size_t at = text.find(piece); at != std::string::npos; at = text.find(piece, at + 1)) ++found;
         return found;
     };
-    for (const std::string local : {"bake", "info", "sample", "compare", "render", "diff", "presets"}) {
+    for (const std::string local : {"bake", "info", "sample", "compare", "render", "diff", "presets", "completion"}) {
         const std::string help = hairbake(local + " --help").output;
         EXPECT_EQ(count(help, "Exit codes:"), 1u) << local;
         EXPECT_FALSE(contains(help, "6  server unreachable")) << local;
@@ -84,8 +84,76 @@ TEST(CompareCommand, GivesDifferencesAsATableAndAsJson) {
     EXPECT_EQ(report["same"], false);
     EXPECT_GT(report["transmittance"]["max_abs"], 0);
     EXPECT_EQ(report["diffuse"]["max_abs"], 0);  // the lighting is the same
-    EXPECT_TRUE(contains(hairbake("compare " + two).output, "specular_02"));
-    EXPECT_EQ(hairbake("compare " + workshop.path("out") + " /no/such 2>&1").exit_code, 3);
+    EXPECT_EQ(report["equal"], false);
+    const Finished table = hairbake("compare " + two);
+    EXPECT_TRUE(table.output.starts_with("different: ")) << table.output;
+    EXPECT_TRUE(contains(table.output, "specular_02"));
+    EXPECT_EQ(table.exit_code, 1);
+    EXPECT_EQ(hairbake("compare --json " + two).exit_code, 1);
+}
+
+// Relatives: the same folder, a tolerance that is too small, JSON, errors of every kind.
+TEST(CompareCommand, ItsExitCodeIsItsVerdict) {
+    const Workshop workshop;
+    ASSERT_EQ(hairbake(workshop.quick_bake()).exit_code, 0);
+    ASSERT_EQ(hairbake("bake" + workshop.hair() + workshop.env() + workshop.out("other") +
+                       " --directions 9 --voxels 32 --face-size 4 --specular-maps 3")
+                  .exit_code,
+              0);
+    const std::string out = workshop.path("out"), two = out + " " + workshop.path("other");
+    const Finished itself = hairbake("compare " + out + " " + out);
+    EXPECT_EQ(itself.exit_code, 0);
+    EXPECT_TRUE(itself.output.starts_with("equal: ")) << itself.output;
+    const Finished within = hairbake("compare --tolerance 1 " + two);
+    EXPECT_EQ(within.exit_code, 0);
+    EXPECT_TRUE(within.output.starts_with("equal (tolerance 1): ")) << within.output;
+    EXPECT_EQ(hairbake("compare --tolerance 1e-6 " + two).exit_code, 1);
+    const auto report = nlohmann::json::parse(hairbake("compare --json --tolerance 1 " + two).output);
+    EXPECT_EQ(report["equal"], true);
+    EXPECT_EQ(report["same"], false);
+    for (const std::string& wrong : {out + " /no/such", out, out + " " + workshop.path("samples"),
+                                     "--tolerance 2 " + two, "--tolerance x " + two, two + " --surprise"})
+        EXPECT_EQ(hairbake("compare " + wrong + " 2>&1").exit_code, 2) << wrong;
+    EXPECT_TRUE(contains(hairbake("compare " + out + " /no/such 2>&1").output, "/no/such"));
+}
+
+TEST(InfoCommand, TellsTheFactsOfAMeshAndTheWidthsOfHair) {
+    const Workshop workshop;
+    const Finished mesh = hairbake("info " + workshop.path("samples/head.obj"));
+    for (const char* piece : {"mesh", "OBJ", "36480", "closed"})
+        EXPECT_TRUE(contains(mesh.output, piece)) << mesh.output;
+    const Finished hair = hairbake("info " + workshop.path("samples/groom.hair"));
+    for (const char* piece : {"thickness.minimum", "thickness.mean", "thickness.maximum"})
+        EXPECT_TRUE(contains(hair.output, piece)) << hair.output;
+}
+
+// Relative: an input that was named by an absolute path.
+TEST(BakeCommand, AResultRemembersItsInputsByDigestAndPath) {
+    const Workshop workshop;
+    ASSERT_EQ(run_program("cd " + workshop.path("samples") + " && " + shell_word(HAIRBAKE_PROGRAM) +
+                          " bake --hair groom.hair" + workshop.env() + workshop.out() +
+                          " --directions 16 --voxels 32 --face-size 4 --specular-maps 3 --outputs npy 2>&1")
+                  .exit_code,
+              0);
+    const nlohmann::json inputs = json_of(workshop.path("out/manifest.json"))["inputs"];
+    EXPECT_EQ(inputs["hair"]["path"], "groom.hair");
+    EXPECT_EQ(inputs["hair"]["absolute_path"], workshop.path("samples/groom.hair"));
+    EXPECT_EQ(inputs["environment"]["path"], workshop.path("samples/sky.hdr"));
+    EXPECT_EQ(inputs["environment"]["absolute_path"], workshop.path("samples/sky.hdr"));
+    EXPECT_EQ(inputs["hair"]["sha256"].get<std::string>().size(), 64u);
+    // `render` finds them from another folder, and says where it sought those that have gone.
+    const std::string render = "cd / && " + shell_word(HAIRBAKE_PROGRAM) + " render " + workshop.path("out") +
+                               " --size 8x8 --samples 1 --out " + workshop.path("a.png") + " 2>&1";
+    EXPECT_EQ(run_program(render).exit_code, 0) << run_program(render).output;
+    std::filesystem::rename(workshop.path("samples/groom.hair"), workshop.path("samples/moved.hair"));
+    const Finished lost = run_program(render);
+    EXPECT_EQ(lost.exit_code, 2);
+    EXPECT_TRUE(contains(lost.output, "sought was groom.hair and " + workshop.path("samples/groom.hair") + " (from /)"))
+        << lost.output;
+    EXPECT_TRUE(contains(lost.output, "--hair"));
+    std::filesystem::rename(workshop.path("samples/moved.hair"), workshop.path("samples/groom.hair"));
+    std::filesystem::remove(workshop.path("samples/sky.hdr"));
+    EXPECT_TRUE(contains(run_program(render).output, "sought was " + workshop.path("samples/sky.hdr"))) << lost.output;
 }
 
 TEST(PresetsCommand, ListsPresetsShowsOneAndPrintsTheSchema) {

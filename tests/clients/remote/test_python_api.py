@@ -37,6 +37,17 @@ class Api(unittest.TestCase):
         # The same request again is done at once.
         self.assertEqual(self.client.submit(hair=self.hair, environment=self.sky, **FIELDS).state, "done")
 
+    def test_warnings_come_with_results_and_bakes(self):
+        """Relative: a bake without any."""
+        mesh = self.shop.write("far.obj", b"v 900 0 0\nv 900.1 0 0\nv 900 0.1 0\nf 1 2 3\n")
+        bake = self.client.wait(self.client.submit(hair=self.hair, occluder=mesh, **FIELDS))
+        result = self.client.fetch(bake, self.shop.path / "out")
+        self.assertEqual(result.warnings(), result.manifest()["warnings"])
+        self.assertEqual(self.client.warnings(bake), result.warnings())
+        self.assertIn("the occluder", result.warnings()[0])
+        plain = self.client.wait(self.client.submit(hair=self.hair, **FIELDS))
+        self.assertEqual(self.client.warnings(plain), [])
+
     def test_arrays_without_numpy_have_the_same_shape_and_values(self):
         bake = self.client.wait(self.client.submit(hair=self.hair, environment=self.sky, **FIELDS))
         self.client.fetch(bake, self.shop.path / "out")

@@ -2,6 +2,8 @@
 import json
 import os
 import random
+import re
+import shlex
 import signal
 import socket
 import subprocess
@@ -74,6 +76,65 @@ class Jobs:
         self.run_ok("fetch", bake, "--out", "out", url=daemon.url)
         self.assertIn("transmittance.npy", self.shop.files("out"))
         self.assertEqual(daemon.ask("GET", f"/v1/bakes/{bake}").json["priority"], 3)
+
+    def test_warnings_of_stages_are_printed_by_submit_wait_and_fetch(self):
+        """Relatives: a bake that was done already, JSON lines, several bakes, a bake without warnings."""
+        daemon = self.daemon()
+        mesh = self.shop.write("far.obj", b"v 900 0 0\nv 900.1 0 0\nv 900 0.1 0\nf 1 2 3\n")
+        words = ["--hair", self.hair, "--occluder", mesh, *QUICK]
+        first = self.run_ok("submit", *words, "--wait", url=daemon.url)
+        bake = first_word(first.out)
+        fetched = self.run_ok("fetch", bake, "--out", "out", url=daemon.url)
+        again = self.run_ok("submit", *words, url=daemon.url)
+        waited = self.run_ok("wait", bake, url=daemon.url)
+        expected = json.loads(self.shop.files("out")["manifest.json"])["warnings"]
+        self.assertGreaterEqual(len(expected), 2)
+        for done in (first, fetched, again, waited):
+            for warning in expected:
+                self.assertIn(f"warning: {warning}", done.err)
+        event = self.run_ok("submit", *words, "--fetch", "out", "--progress", "json", url=daemon.url).events[-1]
+        self.assertEqual(event["warnings"], expected)
+        other = self.shop.write("other.hair", hair_bytes(seed=5))
+        both = self.run_ok("submit", *words, "--hair", other, "--wait", url=daemon.url)
+        self.assertIn(f"warning: bake {bake}: {expected[0]}", both.err)
+        hair_alone = [word for setting in QUICK if setting.startswith("transmittance.") for word in ("--set", setting)]
+        plain = self.run_ok("submit", "--hair", self.hair, *hair_alone, "--outputs", "npy", "--wait", url=daemon.url)
+        self.assertNotIn("warning", plain.err)
+
+    def test_the_bar_fits_the_terminal(self):
+        """Relatives: a dumb terminal, one of few columns, one too narrow for a bar."""
+        daemon = self.daemon()
+        words = [*self.command, "submit", "--hair", self.hair, "--env", self.sky, *QUICK, "--wait", "--server", daemon.url]
+        lines = {}
+        for name, variables in (("dumb", {"TERM": "dumb"}), ("narrow", {"TERM": "xterm", "COLUMNS": "40"}),
+                                ("none", {"TERM": "xterm", "COLUMNS": "16"})):
+            done = subprocess.run(["script", "-qec", shlex.join(words), "/dev/null"], cwd=self.shop.path,
+                                  env={**self.shop.environment, **variables, "NO_COLOR": "1"}, stdin=subprocess.DEVNULL,
+                                  capture_output=True, check=True)
+            lines[name] = done.stdout.decode()
+        self.assertNotIn("\033", lines["dumb"])
+        for name, columns in (("narrow", 40), ("none", 16)):
+            shown = re.findall(r"\r([^\r\n\033]*)\033\[K", lines[name])
+            self.assertTrue(shown, lines[name])
+            self.assertLess(max(map(len, shown)), columns)
+            self.assertEqual(any(line.startswith("[") for line in shown), name == "narrow")
+
+    def test_status_shows_names_and_times(self):
+        """Relatives: the time of a batch, an input without a name."""
+        daemon = self.daemon()
+        digest = daemon.put(hair_bytes())
+        daemon.ask("POST", "/v1/models", {"sha256": digest})
+        daemon.ask("PUT", "/v1/names/model/crowd/jane", {"sha256": digest, "note": ""})
+        bake = first_word(self.run_ok("submit", "--hair", "name:crowd/jane", "--env", self.sky, *QUICK, "--wait",
+                                      url=daemon.url).out)
+        view = daemon.ask("GET", f"/v1/bakes/{bake}").json
+        line = self.run_ok("status", bake, url=daemon.url).out
+        self.assertIn(f"; hair crowd/jane@1; environment {view['environment'][:12]}; created {view['created']}; "
+                      f"finished {view['finished']}", line)
+        batch = first_word(self.run_ok("rebake", "--bake", bake, "--env", self.shop.write("dark.hdr", hdr_bytes(red=90)),
+                                       url=daemon.url).out)
+        self.assertIn(f"; created {daemon.ask('GET', f'/v1/batches/{batch}').json['created']}",
+                      self.run_ok("status", "--batch", batch, url=daemon.url).out)
 
     def test_several_hairs_are_a_bake_each(self):
         daemon = self.daemon()
@@ -180,7 +241,7 @@ class Jobs:
         views = [daemon.ask("GET", f"/v1/bakes/{id}").json for id in (bake, again)]
         self.assertEqual(views[0]["stages"][0], views[1]["stages"][0])  # its attempts too: it ran once
         batch = first_word(self.run_ok("rebake", "--env", dusk, "--bake", bake, url=daemon.url).out)
-        self.assertEqual(self.run_ok("status", "--batch", batch, url=daemon.url).out, f"{batch}: 1 done\n")
+        self.assertTrue(self.run_ok("status", "--batch", batch, url=daemon.url).out.startswith(f"{batch}: 1 done; created 2"))
         self.assertIn(f"{again} done", self.run_ok("wait", "--batch", batch, url=daemon.url).out)
 
     def test_names(self):
