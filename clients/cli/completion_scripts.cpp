@@ -13,7 +13,7 @@ std::string joined(const std::vector<std::string>& words, const std::string& bet
 }
 
 /// `text` with a backslash before each of `characters`.
-std::string escaped(const std::string& text, const std::string& characters) {
+std::string with_backslashes(const std::string& text, const std::string& characters) {
     std::string result;
     for (const char c : text) {
         if (characters.find(c) != std::string::npos) result += '\\';
@@ -154,7 +154,7 @@ std::string zsh_action(const CompletedOption& option) {
 
 std::string zsh_specification(const CompletedOption& option) {
     if (option.name.empty()) return quoted((option.repeats ? "*" : "") + zsh_action(option));
-    return quoted((option.repeats ? "*" : "") + option.name + "[" + escaped(option.help, "[]:\\") + "]" +
+    return quoted((option.repeats ? "*" : "") + option.name + "[" + with_backslashes(option.help, "[]:\\") + "]" +
                   zsh_action(option));
 }
 
@@ -172,7 +172,7 @@ std::string zsh_completion(const std::vector<CompletedCommand>& commands) {
     for (const FieldFacts& facts : field_facts()) paths.push_back(facts.path);
     text += joined(with_sign(paths)) + "\n    fi\n}\n\n_hairbake() {\n    local -a commands\n    commands=(\n";
     for (const CompletedCommand& command : commands)
-        text += "        " + quoted(command.name + ":" + escaped(command.help, ":\\")) + "\n";
+        text += "        " + quoted(command.name + ":" + with_backslashes(command.help, ":\\")) + "\n";
     text +=
         "    )\n    if ((CURRENT == 2)); then\n        _describe command commands\n        return\n    fi\n"
         "    local command=$words[2]\n    shift words\n    ((CURRENT--))\n    case $command in\n";
@@ -191,7 +191,7 @@ std::string zsh_completion(const std::vector<CompletedCommand>& commands) {
 
 namespace {
 
-std::string fish_quoted(const std::string& text) { return "'" + escaped(text, "'\\") + "'"; }
+std::string fish_quoted(const std::string& text) { return "'" + with_backslashes(text, "'\\") + "'"; }
 
 /// What follows the name of an option in `complete`.
 std::string fish_value(const CompletedOption& option) {
