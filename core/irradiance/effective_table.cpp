@@ -97,6 +97,16 @@ std::vector<double> priors(const Fit& fit, std::span<const double> diffuse) {
     return shares;
 }
 
+/// Sets the unblocked diffuse light of a cell.
+void store_light(const Fit& fit, std::span<const double> diffuse, Vec3f& all, float* of_lights) {
+    Vec3d sum;
+    for (std::size_t k = 0; k < fit.lights(); ++k) {
+        sum += fit.flux[k] * diffuse[k];
+        of_lights[k] = static_cast<float>(luminance(fit.flux[k]) * diffuse[k]);
+    }
+    all = Vec3f(sum);
+}
+
 void store_diffuse(const Fit& fit, std::span<const double> diffuse, std::span<const double> prior, float* values) {
     const auto stride = static_cast<std::size_t>(fit.settings.components());
     if (fit.settings.diffuse == EffectiveDiffuse::luminance) {
@@ -214,6 +224,8 @@ EffectiveTable make_effective_table(std::span<const ClusteredLight> lights, cons
     const std::size_t face = std::size_t(table.face_size) * table.face_size, texels = cube_faces * face;
     const std::size_t per_cell = table.lights * table.components;
     table.values.resize((texels + 1) * per_cell);
+    table.diffuse.resize(texels + 1);
+    table.diffuse_light.resize((texels + 1) * table.lights);
     std::atomic<std::size_t> done{0};
     parallel_for(texels + 1, 64, [&](std::size_t begin, std::size_t end) {
         progress.check();
@@ -221,15 +233,15 @@ EffectiveTable make_effective_table(std::span<const ClusteredLight> lights, cons
                         std::vector<Vec3d>(fit.nodes)};
         for (std::size_t i = begin; i < end; ++i) {
             float* values = table.values.data() + i * per_cell;
-            if (i == texels) {
+            const int within = static_cast<int>(i % face), row = within / table.face_size;
+            if (i == texels)
                 fit_without_tangent(fit, scratch, values);
-                continue;
-            }
-            const int within = static_cast<int>(i % face);
-            fit_cell(fit,
-                     cube_texel_direction(table.face_size, static_cast<int>(i / face), within / table.face_size,
-                                          within % table.face_size),
-                     scratch, values);
+            else
+                fit_cell(
+                    fit,
+                    cube_texel_direction(table.face_size, static_cast<int>(i / face), row, within % table.face_size),
+                    scratch, values);
+            store_light(fit, scratch.diffuse, table.diffuse[i], &table.diffuse_light[i * table.lights]);
         }
         progress.report(double(done += end - begin) / double(texels + 1));
     });

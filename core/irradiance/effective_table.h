@@ -26,6 +26,9 @@ struct EffectiveTable {
     int face_size = 0;  ///< the cells are the texels of a cube map of this size, and one more
     std::size_t lights = 0, components = 0;
     std::vector<float> values;  ///< [cells][lights][components]: Ad of each channel, c_0, c_1 ...
+    std::vector<Vec3f>
+        diffuse;  ///< [cells], D: the diffuse light of all lights together, their flux scaled to the sum 1
+    std::vector<float> diffuse_light;  ///< [cells][lights], the luminance of each light's part of it
 
     std::size_t cells() const { return values.size() / (lights * components); }
     /// The cell of a unit tangent from root to tip; the last one is that of (0, 0, 0), a strand without a direction.

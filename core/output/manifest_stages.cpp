@@ -148,6 +148,24 @@ Json run_time(const EffectiveFacts& facts) {
         {"glsl", formula}};
 }
 
+/// Null with fewer than three neighbourhoods.
+Json neighborhood_figures(const NeighborhoodFigures& figures, std::uint32_t neighborhoods) {
+    const auto measured = [&](const auto& value) { return neighborhoods > 2 ? Json(value) : Json(); };
+    return {{"bias", measured(figures.bias)},
+            {"slope", measured(figures.slope)},
+            {"rmse", measured(figures.rmse)},
+            {"ci95", {{"bias", measured(figures.bias_ci95)}, {"slope", measured(figures.slope_ci95)}}}};
+}
+
+/// Errors are shares of the mean light.
+Json picture_error(const NeighborhoodError& error) {
+    Json block = neighborhood_figures(error.effective, error.neighborhoods);
+    block["average_alone"] = neighborhood_figures(error.average, error.neighborhoods);
+    block["neighborhoods"] = error.neighborhoods;
+    block["vertices"] = error.vertices;
+    return block;
+}
+
 Json describe(const EffectiveFacts& facts, const StagePart&, const BakeRequest&) {
     Json lights = Json::array();
     for (const ClusteredLight& light : facts.lights)
@@ -158,6 +176,7 @@ Json describe(const EffectiveFacts& facts, const StagePart&, const BakeRequest&)
               {"diffuse", facts.diffuse_components == 3 ? "rgb" : "luminance"},
               {"cosines", facts.cosines},
               {"tangent_face_size", facts.face_size},
+              {"error_bar", facts.error ? picture_error(*facts.error) : Json()},
               {"run_time", run_time(facts)},
               {"lights", std::move(lights)}}}};
 }

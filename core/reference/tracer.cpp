@@ -177,6 +177,15 @@ void stand_on_occluder(const StrandScene& scene, std::span<RayOrigin> origins, P
     }
 }
 
+std::vector<RayOrigin> origins_of(const StrandScene& scene, std::span<const std::uint32_t> vertices) {
+    std::vector<RayOrigin> origins(vertices.size());
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        origins[i].position = scene.strands().positions[vertices[i]];
+        origins[i].vertex = vertices[i];
+    }
+    return origins;
+}
+
 /// Traces all origins and calls visit(origin number, direction number, T).
 template <class Visit>
 void trace_all(const StrandScene& scene, std::vector<RayOrigin> origins, bool occluded,
@@ -204,31 +213,22 @@ std::vector<float> trace_transmittance(const StrandScene& scene, std::span<const
 DirectionalMeans trace_directional(const StrandScene& scene, std::span<const std::uint32_t> vertices,
                                    std::span<const Vec3d> directions, int sh_bands, bool bent_cone,
                                    Progress& progress) {
-    std::vector<RayOrigin> origins(vertices.size());
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-        origins[i].position = scene.strands().positions[vertices[i]];
-        origins[i].vertex = vertices[i];
-    }
     DirectionalSums sums(vertices.size(), directions, sh_bands, bent_cone);
-    trace_all(scene, std::move(origins), scene.occluder() != nullptr, directions, progress,
+    trace_all(scene, origins_of(scene, vertices), scene.occluder() != nullptr, directions, progress,
               [&](std::size_t i, std::size_t k, double t) { sums.add(i, k, t); });
     return sums.means();
 }
 
-std::vector<float> trace_weighted(const StrandScene& scene, std::span<const Vec3d> directions,
-                                  const DirectionWeights& weights, Progress& progress) {
+std::vector<float> trace_weighted(const StrandScene& scene, std::span<const std::uint32_t> vertices,
+                                  std::span<const Vec3d> directions, const DirectionWeights& weights,
+                                  Progress& progress) {
     HAIRBAKE_ASSERT(directions.size() == weights.directions && weights.rows.size() == scene.strands().vertex_count());
-    std::vector<RayOrigin> origins(scene.strands().vertex_count());
-    for (std::size_t v = 0; v < origins.size(); ++v) {
-        origins[v].position = scene.strands().positions[v];
-        origins[v].vertex = static_cast<std::uint32_t>(v);
-    }
-    std::vector<double> sums(origins.size() * weights.components);
-    trace_all(scene, std::move(origins), scene.occluder() != nullptr, directions, progress,
-              [&](std::size_t v, std::size_t k, double t) {
-                  const float* weight = weights.of(weights.rows[v], k);
+    std::vector<double> sums(vertices.size() * weights.components);
+    trace_all(scene, origins_of(scene, vertices), scene.occluder() != nullptr, directions, progress,
+              [&](std::size_t i, std::size_t k, double t) {
+                  const float* weight = weights.of(weights.rows[vertices[i]], k);
                   for (std::size_t c = 0; c < weights.components; ++c)
-                      sums[v * weights.components + c] += t * weight[c];
+                      sums[i * weights.components + c] += t * double(weight[c]);
               });
     return {sums.begin(), sums.end()};
 }

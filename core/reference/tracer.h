@@ -33,9 +33,11 @@ std::vector<float> trace_transmittance(const StrandScene& scene, std::span<const
 DirectionalMeans trace_directional(const StrandScene& scene, std::span<const std::uint32_t> vertices,
                                    std::span<const Vec3d> directions, int sh_bands, bool bent_cone, Progress& progress);
 
-/// [V * components], the sums of DirectionWeights at every vertex of the scene, for as many directions as `weights` has.
-std::vector<float> trace_weighted(const StrandScene& scene, std::span<const Vec3d> directions,
-                                  const DirectionWeights& weights, Progress& progress);
+/// [vertices * components], the sums of DirectionWeights at `vertices`, in their order, for as many directions as
+/// `weights` has. weights.rows has a row for every vertex of the scene.
+std::vector<float> trace_weighted(const StrandScene& scene, std::span<const std::uint32_t> vertices,
+                                  std::span<const Vec3d> directions, const DirectionWeights& weights,
+                                  Progress& progress);
 
 /// [R * 2]: mean transmittance over the hemisphere at the positions of `receiver`, plain and cosine-weighted
 /// (HemisphereSums). Directions below a point's plane are not traced. A point has no strand of its own: inside a strand

@@ -124,6 +124,7 @@ void check_effective(const BakeRequest& request) {
     const EffectiveSettings& settings = request.effective_transmittance;
     check_range("effective_transmittance.lights", settings.lights, 1, 1024);
     check_range("effective_transmittance.cosines", settings.cosines, 1, 5);
+    check_range("effective_transmittance.reference_neighborhoods", settings.reference_neighborhoods, 0, 100000);
     if (!settings.enabled) return;
     const std::string field = "effective_transmittance.enabled";
     if (!request.hair || !request.environment)

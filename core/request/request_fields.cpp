@@ -152,6 +152,7 @@ std::vector<Field> effective_fields() {
         integer("effective_transmittance.lights", AT(effective_transmittance.lights)),
         integer("effective_transmittance.cosines", AT(effective_transmittance.cosines)),
         choice("effective_transmittance.diffuse", effective_diffuse_names, AT(effective_transmittance.diffuse)),
+        integer("effective_transmittance.reference_neighborhoods", AT(effective_transmittance.reference_neighborhoods)),
     };
 }
 

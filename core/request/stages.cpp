@@ -34,7 +34,7 @@ constexpr Text effective_settings[] = {"strand",
                                        "irradiance.lights",
                                        "fiber",
                                        "effective_transmittance"};
-constexpr Phase effective_phases[] = {{"effective_transmittance", 10}};
+constexpr Phase effective_phases[] = {{"effective_transmittance", 10}, {"effective_reference", 5}};
 
 constexpr Stage table[] = {
     {"transmittance", 4, transmittance_inputs, transmittance_settings, transmittance_phases,
@@ -179,6 +179,8 @@ std::vector<Phase> planned_phases(std::span<const Stage* const> stages, const Ba
             add(read.phase);
     for (const Stage* stage : stages) {
         for (Phase phase : stage->phases) {
+            if (phase.name == "effective_reference" && request.effective_transmittance.reference_neighborhoods == 0)
+                continue;
             if (phase.name == "reference" && request.transmittance.reference_vertices == 0) continue;
             if ((phase.name == "transmittance" || phase.name == "effective_transmittance") &&
                 request.transmittance.method == TransmittanceMethod::trace)

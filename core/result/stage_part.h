@@ -9,6 +9,7 @@
 
 #include "core/environment/light_clusters.h"
 #include "core/reference/error_bar.h"
+#include "core/reference/neighborhood_error.h"
 #include "core/request/stages.h"
 #include "core/result/map_set.h"
 #include "core/result/vertex_array.h"
@@ -46,7 +47,8 @@ struct EffectiveFacts {
     std::string method_reason;
     std::vector<ClusteredLight> lights;
     int diffuse_components = 3, cosines = 3;
-    int face_size = 0;  ///< of the cube of tangent cells
+    int face_size = 0;                       ///< of the cube of tangent cells
+    std::optional<NeighborhoodError> error;  ///< with reference_neighborhoods > 0
 };
 
 /// A stage that has something to tell in the manifest adds a struct of facts here, and a function in

@@ -36,7 +36,8 @@ TEST(RequestJson, EveryFieldMakesTheRoundTrip) {
         "irradiance": {"face_size": 8, "specular_maps": 5, "method": "sh",
                        "sh_bands": {"diffuse": 3, "specular": 8}, "sh_error": 0.5, "clamp_negative": false,
                        "lights": [{"direction": [0.0, 1.0, 0.0], "irradiance": [1.0, 2.0, 3.0]}]},
-        "effective_transmittance": {"enabled": true, "lights": 16, "cosines": 4, "diffuse": "luminance"},
+        "effective_transmittance": {"enabled": true, "lights": 16, "cosines": 4, "diffuse": "luminance",
+                                    "reference_neighborhoods": 9},
         "outputs": ["hair"]})";
     const BakeRequest request = parsed(text);
     EXPECT_EQ(nlohmann::json::parse(to_json(request)), nlohmann::json::parse(text));

@@ -77,7 +77,8 @@ TEST(StageKeys, EveryFieldIsInTheKeysOfTheStagesThatReadItAndInNoOther) {
         {"effective_transmittance.enabled", "true", "effective_transmittance"},
         {"effective_transmittance.lights", "16", "effective_transmittance"},
         {"effective_transmittance.cosines", "4", "effective_transmittance"},
-        {"effective_transmittance.diffuse", "luminance", "effective_transmittance"}};
+        {"effective_transmittance.diffuse", "luminance", "effective_transmittance"},
+        {"effective_transmittance.reference_neighborhoods", "9", "effective_transmittance"}};
     std::size_t fields = 0;
     for (const std::string& path : field_paths()) fields += path.find('.') != std::string::npos ? 1 : 0;
     EXPECT_EQ(std::size(changes) + 1, fields) << "fiber.model has one value; all others are in the list";
