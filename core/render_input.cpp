@@ -186,11 +186,14 @@ void check_render_input(const RenderRequest& request) {
 }
 
 RenderInput read_render_input(const RenderRequest& request, BakeProgress& progress) {
-    std::optional<TriangleMesh> mesh;
-    if (request.mesh) mesh = read_mesh(*request.mesh);
+    std::optional<MeshFile> mesh;
+    if (request.mesh) mesh = read_mesh_file(*request.mesh);
     RenderInput input = request.result ? from_folder(request) : from_bake(request, progress);
     if (needs_environment(request) && !input.environment) read_sky(input, progress);
-    input.mesh = std::move(mesh);
+    if (mesh) {
+        for (const std::string& warning : mesh->warnings) input.warnings.push_back("the mesh: " + warning);
+        input.mesh = std::move(mesh->mesh);
+    }
     progress.check();
     return input;
 }

@@ -51,7 +51,7 @@ NEVER_REACHED = [
 NEVER_REACHED_BUT = {("server/http/http_server.cpp", "httplib.h")}
 OURS = re.compile(r"(core|clients|server|tests)/")
 # Libraries that stay in .cpp files.
-IN_SOURCES_ONLY = re.compile(r"(openvdb|embree\d|OpenImageIO|hwy|valijson|curl)/|(httplib|sqlite3|tiny_gltf|tiny_obj_loader)\.h")
+IN_SOURCES_ONLY = re.compile(r"(openvdb|embree\d|OpenImageIO|OpenEXR|GL|hwy|valijson|curl)/|(httplib|sqlite3|tiny_gltf|tiny_obj_loader)\.h")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 

@@ -72,9 +72,10 @@ std::size_t cut_faces(const PolygonMesh& from, MeshFile& file) {
 void warn_of_faces(std::size_t first_crossing, const MeshOrientation& orientation, MeshFile& file) {
     const std::size_t triangles = file.mesh.triangles.size();
     if (file.crossing_faces > 0)
-        file.warnings.push_back(faces_text(file.crossing_faces) + " of " + std::to_string(file.faces) +
-                                " cross themselves, the first of them face " + std::to_string(first_crossing + 1) +
-                                "; each becomes a fan of triangles about its corner with the smallest coordinates");
+        file.warnings.push_back("in " + std::to_string(file.crossing_faces) + " of its " + faces_text(file.faces) +
+                                " the outline crosses itself, first in face " + std::to_string(first_crossing + 1) +
+                                "; such a face becomes a fan of triangles about its corner with the smallest "
+                                "coordinates");
     if (orientation.turned_triangles == triangles)
         file.warnings.push_back("its triangles run clockwise seen from outside: they are turned round");
     else if (orientation.turned_triangles > 0)

@@ -163,8 +163,8 @@ private:
         items.clear();
         double count = 1;
         if (property.count_type) count = numbers_.next(*property.count_type);
-        if (!(count >= 0) || count != std::floor(count) ||
-            count > static_cast<double>(numbers_.left() / numbers_.fewest(property.type)))
+        const std::uint64_t most = numbers_.left() / numbers_.fewest(property.type);
+        if (!(count >= 0) || count != std::floor(count) || count > static_cast<double>(most))
             refuse(element, i,
                    "the list " + property.name + " has " + short_number(count) +
                        " items; that is no number, or more than the file holds");

@@ -51,16 +51,16 @@ void check(const RebakeOptions& options) {
     check_ids(options.bakes, "bake");
 }
 
-/// "3 transmittance and 1 irradiance stages": of whatever stages the server counts.
+/// "3 transmittance and 1 irradiance stages": of whatever stages the server counts, without those of which there is none.
 std::string counts_text(const Json& counts) {
-    std::string text;
-    std::size_t left = counts.size();
-    for (const auto& [stage, count] : counts.items()) {
-        text += std::to_string(count.get<std::int64_t>()) + " " + plain(stage);
-        --left;
-        text += left > 1 ? ", " : left == 1 ? " and " : " stages";
-    }
-    return text;
+    std::vector<std::string> parts;
+    for (const auto& [stage, count] : counts.items())
+        if (count.get<std::int64_t>() > 0)
+            parts.push_back(std::to_string(count.get<std::int64_t>()) + " " + plain(stage));
+    std::string text = parts.empty() ? "no" : "";
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        text += (i == 0 ? "" : i + 1 < parts.size() ? ", " : " and ") + parts[i];
+    return text + " stages";
 }
 
 void tell(const RebakeOptions& options, const Json& answer) {

@@ -92,5 +92,21 @@ TEST(RenderCommand, RefusesWhatItCannotDo) {
     EXPECT_FALSE(std::filesystem::exists(workshop.path("a.png")));
 }
 
+// Relative: a mesh without anything to tell.
+TEST(RenderCommand, WarningsOfItsMeshArePrinted) {
+    const Workshop workshop;
+    ASSERT_EQ(hairbake(workshop.quick_bake()).exit_code, 0);
+    std::ofstream(workshop.path("bow.obj")) << "v 0 0 0\nv 9 9 0\nv 9 0 0\nv 0 9 0\nf 1 2 3 4\n";
+    const std::string render =
+        "render " + workshop.path("out") + " --size 8x8 --samples 1 --out " + workshop.path("a.png");
+    const Finished bow = hairbake(render + " --mesh " + workshop.path("bow.obj") + " 2>&1");
+    EXPECT_EQ(bow.exit_code, 0);
+    EXPECT_TRUE(
+        contains(bow.output, "warning: the mesh: in 1 of its 1 face the outline crosses itself, first in face 1"))
+        << bow.output;
+    EXPECT_FALSE(
+        contains(hairbake(render + " --mesh " + workshop.path("samples/head.obj") + " 2>&1").output, "the mesh"));
+}
+
 }  // namespace
 }  // namespace hairbake::test_support

@@ -104,7 +104,8 @@ class Jobs:
     def test_the_bar_fits_the_terminal(self):
         """Relatives: a dumb terminal, one of few columns, one too narrow for a bar."""
         daemon = self.daemon()
-        words = [*self.command, "submit", "--hair", self.hair, "--env", self.sky, *QUICK, "--wait", "--server", daemon.url]
+        words = [*self.command, "submit", "--hair", self.hair, "--env", self.sky, *QUICK, "--wait", "--server",
+                 daemon.url]
         lines = {}
         for name, variables in (("dumb", {"TERM": "dumb"}), ("narrow", {"TERM": "xterm", "COLUMNS": "40"}),
                                 ("none", {"TERM": "xterm", "COLUMNS": "16"})):
@@ -131,8 +132,8 @@ class Jobs:
         line = self.run_ok("status", bake, url=daemon.url).out
         self.assertIn(f"; hair crowd/jane@1; environment {view['environment'][:12]}; created {view['created']}; "
                       f"finished {view['finished']}", line)
-        batch = first_word(self.run_ok("rebake", "--bake", bake, "--env", self.shop.write("dark.hdr", hdr_bytes(red=90)),
-                                       url=daemon.url).out)
+        dark = self.shop.write("dark.hdr", hdr_bytes(red=90))
+        batch = first_word(self.run_ok("rebake", "--bake", bake, "--env", dark, url=daemon.url).out)
         self.assertIn(f"; created {daemon.ask('GET', f'/v1/batches/{batch}').json['created']}",
                       self.run_ok("status", "--batch", batch, url=daemon.url).out)
 
@@ -224,12 +225,12 @@ class Jobs:
         dusk = self.shop.write("dusk.hdr", hdr_bytes(red=200))
         forecast = self.run_ok("rebake", "--env", dusk, "--bake", bake, "--dry-run", "--progress", "json",
                                url=daemon.url).events
-        self.assertEqual(forecast[-1]["reused_stages"], {"transmittance": 1, "irradiance": 0})
-        self.assertEqual(forecast[-1]["computed_stages"], {"transmittance": 0, "irradiance": 1})
+        for kind, stage in (("reused_stages", "transmittance"), ("computed_stages", "irradiance")):
+            self.assertEqual({name: count for name, count in forecast[-1][kind].items() if count}, {stage: 1})
         brighter = ["rebake", "--env", dusk, "--bake", bake, "--environment-settings", '{"exposure_stops": 1}',
                     "--fiber", '{"kajiya_kay": {"exponent": 8}}', "--dry-run"]
-        self.assertIn('"irradiance": 1' if self.command == PYTHON else "0 transmittance and 1 irradiance stages would be computed",
-                      self.run_ok(*brighter, url=daemon.url).out)
+        words = '"irradiance": 1' if self.command == PYTHON else "1 irradiance stages would be computed"
+        self.assertIn(words, self.run_ok(*brighter, url=daemon.url).out)
         old_place = self.run_ok("rebake", "--env", dusk, "--bake", bake, "--irradiance", '{"exponent": 8}', "--dry-run",
                                 url=daemon.url)
         self.assertIn("irradiance.exponent is deprecated", old_place.err)
@@ -241,7 +242,8 @@ class Jobs:
         views = [daemon.ask("GET", f"/v1/bakes/{id}").json for id in (bake, again)]
         self.assertEqual(views[0]["stages"][0], views[1]["stages"][0])  # its attempts too: it ran once
         batch = first_word(self.run_ok("rebake", "--env", dusk, "--bake", bake, url=daemon.url).out)
-        self.assertTrue(self.run_ok("status", "--batch", batch, url=daemon.url).out.startswith(f"{batch}: 1 done; created 2"))
+        counts = self.run_ok("status", "--batch", batch, url=daemon.url).out
+        self.assertTrue(counts.startswith(f"{batch}: 1 done; created 2"), counts)
         self.assertIn(f"{again} done", self.run_ok("wait", "--batch", batch, url=daemon.url).out)
 
     def test_names(self):

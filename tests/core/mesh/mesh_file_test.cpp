@@ -142,6 +142,28 @@ TEST(MeshFile, CutsAConcaveFaceToTheSameSurfaceWhereverItBegins) {
         }
 }
 
+// Relatives: triangles that disagree, a mesh that is inside out, a mesh without a fault.
+TEST(MeshFile, CountsTheFacesAndTrianglesThatItChangesInWarnings) {
+    EXPECT_NE(mesh_warnings(square + "f 1 2 3\nf 1 3 2 4\nf 1 2 3 4\n")
+                  .find("in 1 of its 3 faces the outline crosses "
+                        "itself, first in face 2"),
+              std::string::npos);
+    const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+    EXPECT_EQ(mesh_warnings(corners + "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"), "");
+    EXPECT_NE(mesh_warnings(corners + "f 1 2 3\nf 1 2 4\nf 2 3 4\nf 3 1 4\n").find("1 of its 4 triangles disagree"),
+              std::string::npos);
+    EXPECT_NE(mesh_warnings(corners + "f 1 2 3\nf 1 4 2\nf 2 4 3\nf 3 4 1\n").find("run clockwise seen from outside"),
+              std::string::npos);
+    // A normal of the file on the back of a turned triangle is turned, too.
+    const std::string normals = "vn -1 -1 -1\nvn 1 0 0\nvn 0 1 0\nvn 0 0 1\n";
+    const MeshFile outward =
+        mesh_of(corners + normals + "f 1//1 3//3 2//2\nf 1//1 2//2 4//4\nf 2//2 3//3 4//4\nf 3//3 1//1 4//4\n");
+    std::string inward = corners + "vn 1 1 1\nvn -1 0 0\nvn 0 -1 0\nvn 0 0 -1\n";
+    const MeshFile turned =
+        mesh_of(inward + "f 1//1 2//2 3//3\nf 1//1 4//4 2//2\nf 2//2 4//4 3//3\nf 3//3 4//4 1//1\n");
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(turned.mesh.normals[i], outward.mesh.normals[i]) << i;
+}
+
 TEST(MeshFile, RefusesOtherFormatsByName) {
     for (const auto& [bytes, name] : {std::pair("Kaydara FBX Binary  ", "FBX"),
                                       {"PXR-USDC", "USD"},
