@@ -109,7 +109,6 @@ BakeResult full_result() {
     arrays.push_back(counted_array(bent_cone_kind(), 5, 4, 0.25f));
     arrays.push_back(counted_array(effective_transmittance_kind(), 5, 6, 0.0625f));
     arrays.push_back(counted_array(receiver_kind(), 2, 2, 0.125f));
-    arrays.push_back(counted_array(effective_transmittance_kind(), 5, 4, 0.5f));
     return result;
 }
 
