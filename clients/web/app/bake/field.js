@@ -95,9 +95,8 @@ function Lights({ schema, value, on_change, described, place }) {
 }
 
 // [component, whether it is a group of inputs]
-function control_of(path, schema) {
-    const name = path.at(-1);
-    if (name === 'lights') return [Lights, true];
+function control_of(schema) {
+    if (schema.type === 'array' && schema.items.properties?.irradiance) return [Lights, true];
     if (schema.type === 'array' && schema.items.enum) return [Choices, true];
     if (schema.type === 'array') return [Triple, true];
     if (schema.anyOf) return [NumberOrWord, false];
@@ -142,7 +141,7 @@ export function Field({ path, schema, value, on_change, fault, changed }) {
         return html`<div class=${mark}><label><input id=${id} type="checkbox" role="switch" checked=${value}
             aria-describedby=${described} aria-invalid=${invalid ? 'true' : null}
             onChange=${event => on_change(event.target.checked)} /> ${title}</label>${help}</div>`;
-    const [Control, is_group] = control_of(path, schema);
+    const [Control, is_group] = control_of(schema);
     const parts = path.at(-1) === 'tint' ? ['R', 'G', 'B'] : undefined;
     if (is_group)
         return html`<div class=${`${mark} ${Control === Triple ? '' : 'wide'}`}><fieldset><legend>${title}</legend>
