@@ -77,7 +77,7 @@ class DeletionOnFullDisk(unittest.TestCase):
             data = os.urandom(5_000)
             reply = d.ask("PUT", f"/v1/blobs/{sha256(data)}", data)
             self.assertEqual(reply.status, 201, reply.body)
-            self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}").status, 404)
+            self.assertEqual(d.ask("GET", f"/v1/bakes/{bake}").status, 410)
             d.wait_for_log("are given to a deletion")
 
 

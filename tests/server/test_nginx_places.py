@@ -145,6 +145,7 @@ class Places(unittest.TestCase):
             self.check_passes(OTHER, "slow uploads")
             reply = self.ask_from("127.0.0.1", "PUT", f"/v1/blobs/{sha256(b'x')}", b"x")
             self.assertEqual((reply.status, reply.headers["Retry-After"], reply.json["type"]), (429, "1", "urn:hairbake:problem:too-many"))
+        eventually(lambda: not self.daemon.leftovers())  # nginx has cut them all
         self.check_passes("127.0.0.1", "after slow uploads")  # the places are free again
 
     def test_slow_uploads_of_three_addresses_leave_places_to_a_fourth(self):
