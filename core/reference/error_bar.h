@@ -68,7 +68,10 @@ public:
     /// Throws Error(cancelled).
     ErrorReference(const StrandScene& scene, int count, std::uint64_t seed, Progress& progress);
 
-    /// average: [V], of a bake
+    /// The vertices outside other strands, ascending: those at which bakes are compared.
+    std::span<const std::uint32_t> vertices() const { return outside_; }
+
+    /// average: [V], of a bake; only its values at vertices() are read
     ErrorBar compare(std::span<const float> average) const;
 
 private:
