@@ -52,6 +52,15 @@ Vertices nearest_to(const StrandGeometry& strands, std::uint32_t centre) {
     return nearest;
 }
 
+/// Removes the vertices that lie inside other strands. One search serves all neighbourhoods: it visits every segment.
+void keep_outside(const StrandGeometry& strands, std::vector<Vertices>& neighborhoods) {
+    Vertices vertices;
+    for (const Vertices& some : neighborhoods) vertices.insert(vertices.end(), some.begin(), some.end());
+    const std::vector<float> distance = distance_to_other_strands(strands, vertices, 1);
+    std::size_t place = 0;
+    for (Vertices& some : neighborhoods) std::erase_if(some, [&](std::uint32_t) { return distance[place++] < 0; });
+}
+
 /// [neighbourhood]: its vertices outside other strands.
 std::vector<Vertices> find_neighborhoods(const StrandScene& scene, const Vertices& centres, const Progress& progress) {
     std::vector<Vertices> all(centres.size());
@@ -59,13 +68,7 @@ std::vector<Vertices> find_neighborhoods(const StrandScene& scene, const Vertice
         progress.check();
         for (std::size_t i = begin; i < end; ++i) all[i] = nearest_to(scene.strands(), centres[i]);
     });
-    for (Vertices& vertices : all) {
-        const std::vector<float> distance = distance_to_other_strands(scene.strands(), vertices, 1);
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < vertices.size(); ++i)
-            if (distance[i] >= 0) vertices[kept++] = vertices[i];
-        vertices.resize(kept);
-    }
+    keep_outside(scene.strands(), all);
     std::erase_if(all, [](const Vertices& vertices) { return vertices.empty(); });
     return all;
 }
