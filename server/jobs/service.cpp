@@ -242,6 +242,7 @@ std::string Service::not_ready() {
     try {
         parts_->database.check_in_place();
         parts_->folder.check_usable();
+        parts_->store.check_folders();
         IncomingFile probe(parts_->store.incoming_folder(), 16);
         probe.add(std::as_bytes(std::span("ready", 5)));
         parts_->database.read([](Sql& sql) { sql.rows("SELECT count(*) FROM names"); });
