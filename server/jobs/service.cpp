@@ -88,6 +88,7 @@ struct Service::Parts {
         for (const StartedTask& task : surviving) spared.insert(task.folder);
         log_lost(store.recover(spared, identity.accepted()));
         uploads.recover();
+        store.log_lost_found();
         const Queue::Recovered recovered = queue.recover(surviving);
         if (recovered.lost) spdlog::warn("{} stages lost files; they are baked again", recovered.lost);
         if (recovered.planned_again)

@@ -154,6 +154,8 @@ public:
 
     /// Moves a file of the store to lost+found and adds it to `count`.
     void put_aside(const std::filesystem::path& file, FileCount& count);
+    /// Says how much lost+found holds. Call it after the start has moved its last file there.
+    void log_lost_found() const;
     std::filesystem::path lost_folder() const { return lost_found_.folder(); }
 
     /// Notes that blobs were used; written to the database with flush_uses(), as are checks of digests.

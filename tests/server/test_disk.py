@@ -103,14 +103,15 @@ class Disk(unittest.TestCase):
             self.assertEqual(d.leftovers(), [])
             verified(self, d, bake)
 
-    def test_a_store_that_cannot_be_written_is_507_and_readyz_says_so(self):
+    def test_a_store_that_cannot_be_written_is_503_and_readyz_says_so(self):
         with SmallDisk() as d:
             hair = d.put(hair_bytes())
             bake = d.ask("POST", "/v1/bakes", quick_request(hair)).json["id"]
             self.assertEqual(d.wait(bake)["state"], "done")
             d.run_inside('mount --bind "$0" "$0" && mount -o remount,bind,ro "$0"')
             reply = d.ask("PUT", f"/v1/blobs/{sha256(b'x')}", b"x")
-            self.assert_full(reply)
+            self.assertEqual((reply.status, reply.json["type"]), (503, "urn:hairbake:problem:unwritable"), reply.body)
+            self.assertIn("Retry-After", reply.headers)
             self.assertIn("cannot be written", reply.json["detail"])
             ready = d.ask("GET", "/readyz")
             self.assertEqual(ready.status, 503)
