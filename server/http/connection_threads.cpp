@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <system_error>
 #include <thread>
@@ -22,6 +23,12 @@ bool is_final(int error) { return error == EINVAL || error == EBADF || error == 
 /// Whether accept() can be called again at once: a signal came, or the client went away. The other errors are shortages
 /// of descriptors or memory, which may pass.
 bool is_nothing(int error) { return error == EINTR || error == EAGAIN || error == ECONNABORTED; }
+
+/// Whether the client has sent nothing yet.
+bool is_silent(int socket) {
+    char first = 0;
+    return ::recv(socket, &first, 1, MSG_PEEK | MSG_DONTWAIT) < 0 && (errno == EAGAIN || errno == EWOULDBLOCK);
+}
 
 }  // namespace
 
@@ -111,12 +118,27 @@ void ConnectionThreads::complain(int error) {
     spdlog::error("no connection can be accepted at present: {}", std::generic_category().message(error));
 }
 
-ConnectionThreads::Place ConnectionThreads::place(int accepted) {
+/// For a full queue. Returns the socket to be refused: that of the first connection that has sent nothing, whose place
+/// the new one takes, or else the new one.
+int ConnectionThreads::trade_for_silent(int accepted) {
+    const auto silent = std::find_if(waiting_.begin(), waiting_.end(), is_silent);
+    if (silent == waiting_.end()) return accepted;
+    const int refused = *silent;
+    waiting_.erase(silent);
+    waiting_.push_back(accepted);
+    return refused;
+}
+
+/// Where an accepted connection goes. At the door, `accepted` becomes the one to be refused.
+ConnectionThreads::Place ConnectionThreads::place(int& accepted) {
     const std::lock_guard lock(mutex_);
     --accepting_;
     if (accepted < 0) return Place::elsewhere;
     if (serving_ == threads_) {
-        if (waiting_.size() == most_waiting_) return Place::at_door;
+        if (waiting_.size() == most_waiting_) {
+            accepted = trade_for_silent(accepted);
+            return Place::at_door;
+        }
         waiting_.push_back(accepted);
         others_wait_ = true;
         return Place::elsewhere;
@@ -136,8 +158,10 @@ int ConnectionThreads::next_waiting() {
         --serving_;
         return -1;
     }
-    const int socket = waiting_.front();
-    waiting_.erase(waiting_.begin());
+    auto next = std::find_if_not(waiting_.begin(), waiting_.end(), is_silent);
+    if (next == waiting_.end()) next = waiting_.begin();
+    const int socket = *next;
+    waiting_.erase(next);
     others_wait_ = !waiting_.empty();
     return socket;
 }

@@ -13,8 +13,9 @@ namespace hairbake {
 
 /// A thread serves the connections that it accepted itself, so under light load no connection changes its thread. A few
 /// threads accept at a time; the others sleep. The thread that fell asleep last is woken first, since its stack is
-/// still in the cache. While all `threads` serve, one more thread accepts: connections wait in the queue in order, and
-/// are refused when it is full.
+/// still in the cache. While all `threads` serve, one more thread accepts: connections wait in the queue in order. Those
+/// that have sent something go first. When the queue is full, the first that has sent nothing is refused, or else the new
+/// one: so idle connections keep no others out.
 class ConnectionThreads {
 public:
     /// Takes over an accepted connection's socket. Must not throw.
@@ -50,7 +51,8 @@ private:
     bool await_turn(std::condition_variable& woken);
     int accept();
     void complain(int error);
-    Place place(int accepted);
+    Place place(int& accepted);
+    int trade_for_silent(int accepted);
     int next_waiting();
 
     const int listening_;

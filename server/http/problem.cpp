@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <cerrno>
 #include <new>
 #include <nlohmann/json.hpp>
 
@@ -70,6 +71,15 @@ HttpReply with_needed_by(HttpReply reply, const std::string& list) {
     return reply;
 }
 
+/// The disk has room, and the daemon's files cannot be written: the operator can change that.
+HttpReply unwritable(const std::string& words) { return problem(503, "unwritable", words).with("Retry-After", "5"); }
+
+/// Whether the system forbids or fails to write, other than for lack of room.
+bool is_unwritable(const Error& error) {
+    const int code = error.system_error();
+    return code == EACCES || code == EPERM || code == EROFS || code == EIO;
+}
+
 HttpReply problem_of(const Refusal& refusal) {
     switch (refusal.why()) {
         case Refused::malformed:
@@ -89,6 +99,8 @@ HttpReply problem_of(const Refusal& refusal) {
                 .with("Retry-After", retry_after(refusal, 60));
         case Refused::too_slow:
             return problem(408, "too-slow", refusal.what(), refusal.field());
+        case Refused::unwritable:
+            return unwritable(refusal.what());
         case Refused::full:
             return problem(507, "full", refusal.what(), refusal.field());
         default:
@@ -126,7 +138,8 @@ HttpReply problem_of_current_exception() {
     } catch (const Refusal& refusal) {
         return problem_of(refusal);
     } catch (const Error& error) {
-        if (error.kind() == ErrorKind::out_of_resources) return problem(507, "full", error.what());
+        if (error.kind() == ErrorKind::out_of_resources)
+            return is_unwritable(error) ? unwritable(error.what()) : problem(507, "full", error.what());
         spdlog::error("a request failed: {}", error.what());
     } catch (const std::bad_alloc&) {
         return problem(503, "busy", "memory is short").with("Retry-After", "5");

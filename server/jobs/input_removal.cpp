@@ -86,10 +86,11 @@ std::string kind_of(Sql& sql, const std::string& column, const std::string& dige
     return rows.empty() ? std::string() : rows[0].text(0);
 }
 
-/// "is stored as the kind model; DELETE /v1/models/DIGEST deletes it"; `kind` "mesh" is a file that was sent only.
+/// "is stored as the kind model; DELETE /v1/models/DIGEST deletes it". Without a kind it is a file that was sent alone,
+/// whatever names and bakes use it for.
 std::string stored_as(const std::string& kind, const std::string& digest) {
-    return "is stored as the kind " + kind + "; DELETE /v1/" + (kind == "mesh" ? "blobs" : kind + "s") + "/" + digest +
-           " deletes it";
+    return (kind.empty() ? "is stored, and as no model or environment" : "is stored as the kind " + kind) +
+           "; DELETE /v1/" + (kind.empty() ? "blobs" : kind + "s") + "/" + digest + " deletes it";
 }
 
 /// Says where the file is, if it is stored as something else.
@@ -98,8 +99,7 @@ std::string stored_as(const std::string& kind, const std::string& digest) {
     const std::string other = kind_of(sql, "sha256", digest);
     const bool is_sent = any(sql, "SELECT 1 FROM sent_blobs WHERE sha256 = ?", {digest});
     if (other.empty() && !is_sent) throw Refusal(Refused::not_found, found);
-    throw Refusal(Refused::not_found, found + "; the file " + stored_as(other.empty() ? "mesh" : other, digest),
-                  "kind");
+    throw Refusal(Refused::not_found, found + "; the file " + stored_as(other, digest), "kind");
 }
 
 /// Without its entry of the kind, a model's or environment's blob is needed for something else.

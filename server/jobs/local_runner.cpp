@@ -18,6 +18,7 @@
 
 #include "core/base/error.h"
 #include "server/jobs/runner.h"
+#include "server/store/store_advice.h"
 
 namespace hairbake {
 namespace {
@@ -54,12 +55,37 @@ public:
     posix_spawnattr_t attributes;
 };
 
+/// `error` is errno of a start of the program.
+std::string advice_to_start(const fs::path& program, int error) {
+    std::error_code unknown;
+    switch (error) {
+        case ENOENT:
+            if (fs::exists(program, unknown))
+                return "The file is there, and the interpreter that it names is missing: `file` shows its name. "
+                       "Install it, or install hairbake again";
+            return "Install hairbake again, or let [workers] program name the file";
+        case EAGAIN:
+            return "The system gives user " + std::to_string(::geteuid()) +
+                   " no more processes: end some, raise the limit (`ulimit -u`, TasksMax of the unit, pids of the "
+                   "container), or lower [workers] count";
+        case ENOMEM:
+            return "The machine is short of memory: end other programs, or lower [workers] count";
+        case EACCES:
+            return "User " + std::to_string(::geteuid()) + " may not run it: `chmod a+rx " + program.string() +
+                   "`, and the folders above must be searchable";
+        case ENOEXEC:
+            return "The file is damaged or of another kind of machine: install hairbake again";
+        default:
+            return advice_for(program, error);
+    }
+}
+
 /// `error` is errno.
 [[noreturn]] void refuse_to_start(const fs::path& program, int error) {
-    throw Error(
-        ErrorKind::internal,
-        "the worker program " + program.string() + " cannot be started: " + std::generic_category().message(error), {},
-        error);
+    throw Error(ErrorKind::internal,
+                "the worker program " + program.string() + " cannot be started: " +
+                    std::generic_category().message(error) + ". " + advice_to_start(program, error),
+                {}, error);
 }
 
 pid_t spawn(const RunnerSettings& settings, const fs::path& work_folder) {

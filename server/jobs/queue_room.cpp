@@ -60,9 +60,7 @@ bool Queue::make_others_give_way(const std::string& stage, std::uint64_t bytes) 
         [&](Sql& sql) {
             std::vector<std::string> gone;
             for (const Giving& giving : giving_way(sql, stage, bytes)) {
-                forget_bakes(sql, sql.rows("SELECT b.seq, b.id, b.state FROM bake_stages m JOIN bakes b ON b.seq = "
-                                           "m.bake WHERE m.stage = ? AND b.state NOT IN ('queued', 'running')",
-                                           {giving.stage}));
+                forget_done_bakes(sql, giving.stage);
                 requeue_stage(sql, giving.stage);
                 gone.insert(gone.end(), giving.blobs.begin(), giving.blobs.end());
             }

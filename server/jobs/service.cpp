@@ -88,6 +88,7 @@ struct Service::Parts {
         for (const StartedTask& task : surviving) spared.insert(task.folder);
         log_lost(store.recover(spared, identity.accepted()));
         uploads.recover();
+        store.log_lost_found();
         const Queue::Recovered recovered = queue.recover(surviving);
         if (recovered.lost) spdlog::warn("{} stages lost files; they are baked again", recovered.lost);
         if (recovered.planned_again)
@@ -165,12 +166,36 @@ std::optional<std::uint64_t> Service::blob_size(const std::string& digest) { ret
 std::unique_ptr<IncomingFile> Service::receive(std::optional<std::uint64_t> bytes, const std::string& digest) {
     parts_->database.check_in_place();
     const bool is_stored = is_digest(digest) && parts_->store.size_of(digest);
-    return std::make_unique<IncomingFile>(parts_->store.incoming_folder(), parts_->settings.blob_bytes,
-                                          parts_->room.reserve(bytes, is_stored));
+    const std::uint64_t limit = parts_->settings.blob_bytes;
+    std::optional<Room::Share> share;
+    try {
+        share.emplace(parts_->room.reserve(bytes, is_stored));
+    } catch (const Refusal&) {  // the disk has no room
+        if (!is_stored) throw;
+        return std::make_unique<IncomingFile>(limit);
+    }
+    return std::make_unique<IncomingFile>(parts_->store.incoming_folder(), limit, std::move(share),
+                                          is_stored ? WhenFull::compare : WhenFull::refuse);
+}
+
+/// A body whose bytes are stored already, and which was not written since the disk has no room.
+void Service::confirm_stored(const std::string& digest) try {
+    open_blob(digest);
+    const auto held = parts_->database.lock();
+    if (!parts_->store.size_of(digest)) throw Refusal(Refused::not_found, "it was deleted meanwhile");
+    parts_->store.note_sent(digest);
+} catch (const Refusal& refusal) {
+    if (refusal.why() != Refused::not_found) throw;
+    throw Refusal(Refused::busy, std::string("the disk has no room for the body, and the stored file is gone: ") +
+                                     refusal.what() + ". Make room on the disk, then send the file again");
 }
 
 bool Service::store_blob(IncomingFile& file, const std::string& expected_digest) {
     parts_->store.check(file, expected_digest);
+    if (!file.has_file()) {
+        confirm_stored(file.digest());
+        return false;
+    }
     const auto held = parts_->database.lock();
     if (!parts_->store.size_of(file.digest())) file.count();  // it may have been stored when the body began
     const bool is_new = parts_->store.adopt(file.path(), file.digest(), Origin::sent);
@@ -242,6 +267,7 @@ std::string Service::not_ready() {
     try {
         parts_->database.check_in_place();
         parts_->folder.check_usable();
+        parts_->store.check_folders();
         IncomingFile probe(parts_->store.incoming_folder(), 16);
         probe.add(std::as_bytes(std::span("ready", 5)));
         parts_->database.read([](Sql& sql) { sql.rows("SELECT count(*) FROM names"); });

@@ -35,7 +35,7 @@ public:
 
     // ---- blobs
     /// A file to receive a body of `bytes` into, or of unknown length. Its room is reserved until the file is gone. A
-    /// body of the blob `digest` needs none in the budget if that is stored.
+    /// body of the blob `digest` needs none in the budget if that is stored, and on a full disk no file.
     /// Throws Refusal(full) when there is no room.
     /// Throws Refusal(busy) when the store was moved, deleted or replaced.
     std::unique_ptr<IncomingFile> receive(std::optional<std::uint64_t> bytes, const std::string& digest = {});
@@ -110,6 +110,7 @@ public:
 private:
     struct Parts;
     std::optional<Answer> answer_if_done(const std::string& body);
+    void confirm_stored(const std::string& digest);
 
     const std::unique_ptr<Parts> parts_;
 };

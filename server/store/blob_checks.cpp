@@ -31,7 +31,9 @@ bool is_at(const fs::path& path, int descriptor) {
 /// replaced or removed meanwhile.
 void BlobStore::refuse_for_now(const std::string& digest, int error) const {
     const std::string found = "the stored bytes of sha256:" + digest + " cannot be read now";
-    if (error == 0) throw Refusal(Refused::busy, found);
+    if (error == 0 || error == ENOENT || error == ENOTDIR || error == ELOOP) check_folder_of(digest);
+    if (error == 0)
+        throw Refusal(Refused::busy, found + ": the file was replaced or removed at this moment. Try again");
     throw Refusal(Refused::busy,
                   found + ": " + std::generic_category().message(error) + ". " + advice_for(path_of(digest), error));
 }

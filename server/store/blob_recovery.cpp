@@ -63,6 +63,8 @@ LostBlobs BlobStore::recover(const std::set<std::string>& spared, bool may_miss_
     return missing.empty() ? LostBlobs() : forget_missing(missing);
 }
 
+void BlobStore::log_lost_found() const { log_held(lost_found_.held(), folder_ / "lost+found"); }
+
 LostBlobs BlobStore::forget_missing(const std::vector<std::string>& digests) {
     LostBlobs lost;
     forget([&](Sql& sql) {
@@ -105,7 +107,6 @@ void BlobStore::clear_unknown_files(const std::vector<fs::path>& files) {
     }
     log_removal(removed, "their blobs were removed before the daemon ended");
     log_move(moved, lost_folder(), "the database does not know these files, their size is wrong, or they are no files");
-    log_held(lost_found_.held(), folder_ / "lost+found");
 }
 
 }  // namespace hairbake

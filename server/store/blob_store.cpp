@@ -39,6 +39,10 @@ FileFacts read_facts(const struct stat& facts) {
     return {facts.st_size, nanoseconds(facts.st_mtim), nanoseconds(facts.st_ctim)};
 }
 
+constexpr const char* advice_for_folder =
+    "Put the folder back that was there before, or unmount what covers it. To use what is there now, restart the "
+    "daemon: it then forgets the files that are missing";
+
 /// Whether this process may add files to the folder and remove some.
 bool may_write(const fs::path& folder) { return ::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) == 0; }
 
@@ -64,7 +68,11 @@ BlobStore::BlobStore(const fs::path& folder, Database& database)
     make_folder(folder_ / "tmp");
     constexpr char digits[] = "0123456789abcdef";
     for (const char high : std::string(digits))
-        for (const char low : std::string(digits)) make_folder(folder_ / "blobs" / std::string{high, low});
+        for (const char low : std::string(digits)) {
+            const fs::path folder = folder_ / "blobs" / std::string{high, low};
+            make_folder(folder);
+            folders_.emplace_back(std::vector<PinnedFiles::Path>{{folder, advice_for_folder}});
+        }
     sync_folder(folder_ / "blobs");
     sync_folder(folder_);
     database_.read([&](Sql& sql) {
@@ -75,6 +83,15 @@ BlobStore::BlobStore(const fs::path& folder, Database& database)
 fs::path BlobStore::path_of(const std::string& digest) const {
     HAIRBAKE_ASSERT(is_digest(digest));
     return folder_ / "blobs" / blob_name(digest);
+}
+
+void BlobStore::check_folder_of(const std::string& digest) const {
+    HAIRBAKE_ASSERT(is_digest(digest));
+    folders_.at(std::stoul(digest.substr(0, 2), nullptr, 16)).check();
+}
+
+void BlobStore::check_folders() const {
+    for (const PinnedFiles& folder : folders_) folder.check();
 }
 
 std::optional<std::uint64_t> BlobStore::size_of(const std::string& digest) {
@@ -98,6 +115,7 @@ void BlobStore::check(IncomingFile& file, const std::string& expected) {
 bool BlobStore::adopt(const fs::path& file, const std::string& digest, Origin origin) {
     const auto held = database_.lock();
     database_.check_in_place();
+    check_folder_of(digest);
     const bool known = size_of(digest).has_value();
     const fs::path path = path_of(digest);
     const std::optional<FileFacts> stored = known ? facts_of(path) : std::nullopt;
@@ -120,11 +138,18 @@ bool BlobStore::adopt(const fs::path& file, const std::string& digest, Origin or
         if (!known) total_bytes_ += static_cast<std::uint64_t>(facts.bytes);
         const std::lock_guard lock(mutex_);
         verified_[digest] = {now(), facts};
-    } else if (origin == Origin::sent && !is_sent(digest)) {  // a result that a client sends as an input
-        database_.write([&](Sql& sql) { sql.run("INSERT OR IGNORE INTO sent_blobs VALUES(?)", {digest}); });
+    } else if (origin == Origin::sent) {
+        note_sent(digest);
     }
     touch(digest);
     return !known;
+}
+
+/// Writes for a result alone, which a client sends as an input.
+void BlobStore::note_sent(const std::string& digest) {
+    if (!is_sent(digest))
+        database_.write([&](Sql& sql) { sql.run("INSERT OR IGNORE INTO sent_blobs VALUES(?)", {digest}); });
+    touch(digest);
 }
 
 bool BlobStore::is_sent(const std::string& digest) {
@@ -159,6 +184,7 @@ LostBlob describe_loss(Sql& sql, const std::string& digest) {
 
 LostBlob BlobStore::lose(const std::string& digest, const OnLoss& on_loss) {
     const auto held = database_.lock();
+    check_folder_of(digest);  // another folder hides more files than this one: they are not lost
     std::optional<LostBlob> lost;
     database_.read([&](Sql& sql) { lost = describe_loss(sql, digest); });  // its rows are gone afterwards
     const fs::path path = path_of(digest);
@@ -176,6 +202,11 @@ void BlobStore::remove(const std::vector<std::string>& digests, std::string_view
     remove([&](Sql&) { return digests; }, reason);
 }
 
+void BlobStore::require_removable(const std::string& digest) const {
+    check_folder_of(digest);
+    hairbake::require_removable(path_of(digest));
+}
+
 /// The rows in `removals` tell the next start that these files may go, should this process die before all are gone.
 void BlobStore::remove(const Choice& choose, std::string_view reason) {
     const auto held = database_.lock();
@@ -185,7 +216,7 @@ void BlobStore::remove(const Choice& choose, std::string_view reason) {
             digests.clear();
             digests = choose(sql);
             for (const std::string& digest : digests) {
-                require_removable(path_of(digest));
+                require_removable(digest);
                 sql.run("INSERT OR REPLACE INTO removals VALUES(?, ?)", {digest, now()});
             }
             return digests;

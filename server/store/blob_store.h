@@ -17,6 +17,7 @@
 #include "server/store/file_system.h"
 #include "server/store/incoming_file.h"
 #include "server/store/lost_found.h"
+#include "server/store/pinned_files.h"
 
 namespace hairbake {
 
@@ -95,6 +96,9 @@ public:
     std::optional<std::uint64_t> size_of(const std::string& digest);
     std::uint64_t total_bytes() const { return total_bytes_; }
 
+    /// Throws Refusal(busy), naming the folder and what to do, when a folder of blobs is another one than at the start.
+    void check_folders() const;
+
     /// Finishes a received file.
     /// Throws Refusal(unprocessable) when `expected` is not empty and not the file's digest.
     static void check(IncomingFile& file, const std::string& expected);
@@ -104,18 +108,23 @@ public:
     /// client sent once stays one that is never evicted.
     bool adopt(const std::filesystem::path& file, const std::string& digest, Origin origin);
 
+    /// A client has sent the bytes of a stored blob: it is used now, and never evicted.
+    void note_sent(const std::string& digest);
+
     /// After a second link to a blob's file was unlinked: that changed the file's ctime, and not its bytes.
     void note_other_link_removed(const std::string& digest);
 
     /// Opens a blob; verifies its digest the first time after the start, and when size, mtime or ctime of the file have
     /// changed since.
     /// Throws Refusal(not_found).
-    /// Throws Refusal(busy) for a file that cannot be read now; it is not forgotten.
+    /// Throws Refusal(busy) for a file that cannot be read now, or whose folder was moved or replaced since the start; it
+    /// is not forgotten.
     /// Throws LostBlob.
     OpenBlob open(const std::string& digest, const OnLoss& on_loss);
 
     /// Forgets a blob whose bytes do not have its digest, and moves what is in its place to lost+found. Returns the
     /// exception for the caller to throw.
+    /// Throws Refusal(busy), and forgets nothing, when its folder was moved or replaced since the start.
     LostBlob lose(const std::string& digest, const OnLoss& on_loss);
 
     /// At most `most` blobs whose digest was last checked before `time` (seconds since 1970), longest ago first.
@@ -133,6 +142,9 @@ public:
     /// Puts off the next check of a blob that could not be read.
     void note_check_failed(const std::string& digest);
 
+    /// Throws Refusal when the file of a blob cannot be removed now.
+    void require_removable(const std::string& digest) const;
+
     /// Removes rows and files, in one transaction. `reason` is for the log.
     /// Throws DeletionNeedsRoom, and changes nothing, when the disk is full.
     void remove(const std::vector<std::string>& digests, std::string_view reason);
@@ -142,6 +154,8 @@ public:
 
     /// Moves a file of the store to lost+found and adds it to `count`.
     void put_aside(const std::filesystem::path& file, FileCount& count);
+    /// Says how much lost+found holds. Call it after the start has moved its last file there.
+    void log_lost_found() const;
     std::filesystem::path lost_folder() const { return lost_found_.folder(); }
 
     /// Notes that blobs were used; written to the database with flush_uses(), as are checks of digests.
@@ -149,6 +163,9 @@ public:
     void flush_uses();
 
 private:
+    /// The folder of a blob is the one of the start.
+    /// Throws Refusal(busy) when not.
+    void check_folder_of(const std::string& digest) const;
     LostBlobs forget_missing(const std::vector<std::string>& digests);
     void sweep_incoming(const std::set<std::string>& spared);
     void clear_unknown_files(const std::vector<std::filesystem::path>& files);
@@ -165,6 +182,7 @@ private:
 
     std::filesystem::path folder_;
     Database& database_;
+    std::vector<PinnedFiles> folders_;            ///< blobs/00 to blobs/ff
     std::atomic<std::uint64_t> total_bytes_ = 0;  ///< of all rows; changed under database_.lock()
     std::mutex mutex_;                            ///< guards the members below
     /// What a file was like when its digest was right, and when that was.

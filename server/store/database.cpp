@@ -41,9 +41,11 @@ namespace {
         throw Error(ErrorKind::out_of_resources, name + " cannot grow: its disk is full. " + advice_for(file, ENOSPC),
                     {}, ENOSPC);
     if (code == SQLITE_READONLY || code == SQLITE_IOERR || code == SQLITE_CANTOPEN)
-        throw Error(ErrorKind::out_of_resources, name + " cannot be written: " + error.what() +
-                                                     ". Check that its disk has room and can be written, and that the "
-                                                     "daemon's user may write the file and its folder");
+        throw Error(ErrorKind::out_of_resources,
+                    name + " cannot be written: " + error.what() +
+                        ". Check that its disk has room and can be written, and that the "
+                        "daemon's user may write the file and its folder",
+                    {}, code == SQLITE_READONLY ? EROFS : EIO);
     const std::string message = "the database: " + std::string(error.what());
     if (code == SQLITE_CORRUPT || code == SQLITE_NOTADB) throw SpoiledDatabase(ErrorKind::internal, message);
     throw Error(ErrorKind::internal, message);

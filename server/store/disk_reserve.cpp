@@ -110,7 +110,8 @@ bool DiskReserve::run_with_help(const std::function<void()>& deletion) {
         } catch (const Error& error) {
             if (error.kind() != ErrorKind::out_of_resources) throw;
             if (error.system_error() != ENOSPC)  // room does not help
-                throw Error(error.kind(), std::string("nothing was changed: ") + error.what());
+                throw Error(error.kind(), std::string("nothing was changed: ") + error.what(), {},
+                            error.system_error());
             const auto* const doomed = dynamic_cast<const DeletionNeedsRoom*>(&error);
             files = doomed ? doomed->files() : std::vector<fs::path>();
         }

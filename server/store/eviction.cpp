@@ -42,13 +42,16 @@ std::vector<std::string> oldest_stages(Sql& sql) {
                  {ranked_at_once}));
 }
 
-/// Forgets a stage and its bakes; returns its blobs that nothing else needs.
+/// Forgets the result of a stage with its done bakes; returns its blobs that nothing else needs. A failed or cancelled
+/// bake has no result, so its record stays, and with it the stage, as one that has not run.
 std::vector<std::string> forget_stage(Sql& sql, const std::string& key) {
     std::vector<std::string> blobs = blobs_of_stage_alone(sql, key);
-    forget_bakes(sql, sql.rows("SELECT b.seq, b.id, b.state FROM bake_stages m JOIN bakes b ON b.seq = m.bake WHERE "
-                               "m.stage = ?",
-                               {key}));
+    forget_done_bakes(sql, key);
     sql.run("DELETE FROM stage_files WHERE stage = ?", {key});
+    if (sql.run("UPDATE stages SET state = 'cancelled', manifest = NULL WHERE key = ?1 AND EXISTS(SELECT 1 FROM "
+                "bake_stages m WHERE m.stage = ?1)",
+                {key}) > 0)
+        return blobs;
     sql.run("DELETE FROM stage_inputs WHERE stage = ?", {key});
     sql.run("DELETE FROM stages WHERE key = ?", {key});
     return blobs;
@@ -77,7 +80,7 @@ Forgotten forget_oldest(Sql& sql, BlobStore& store, const std::vector<std::strin
     Forgotten forgotten;
     for (std::size_t i = 0; i < ranked.size() && forgotten.bytes < wanted; ++i)
         for (std::string& digest : forget(sql, ranked[i])) {
-            require_removable(store.path_of(digest));  // else its rows stay, too
+            store.require_removable(digest);  // else its rows stay, too
             forgotten.bytes += store.size_of(digest).value_or(0);
             forgotten.blobs.push_back(std::move(digest));
         }

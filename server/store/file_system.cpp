@@ -25,7 +25,7 @@ void throw_store_error(const std::filesystem::path& file, int error) {
     const std::string place = " in " + file.parent_path().string() + ": " + words + ". " + advice_for(file, error);
     if (busy) throw Refusal(Refused::busy, "the store is short of memory or descriptors: " + words);
     if (full) throw Error(ErrorKind::out_of_resources, "the store cannot grow" + place);
-    if (closed) throw Error(ErrorKind::out_of_resources, "the store cannot be written" + place);
+    if (closed) throw Error(ErrorKind::out_of_resources, "the store cannot be written" + place, {}, error);
     throw Error(ErrorKind::internal, "the store's " + file.string() + ": " + words);
 }
 

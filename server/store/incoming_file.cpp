@@ -12,27 +12,44 @@
 
 namespace hairbake {
 
-IncomingFile::IncomingFile(const std::filesystem::path& folder, std::uint64_t limit, std::optional<Room::Share> share)
+IncomingFile::IncomingFile(const std::filesystem::path& folder, std::uint64_t limit, std::optional<Room::Share> share,
+                           WhenFull when_full)
     : path_(folder / random_name()),
       limit_(limit),
       descriptor_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0640)),
+      when_full_(when_full),
       share_(std::move(share)) {
-    if (descriptor_ < 0) throw_store_error(path_, errno);
+    if (descriptor_ >= 0) return;
+    if (when_full_ == WhenFull::refuse) throw_store_error(path_, errno);
+    drop_file();
 }
 
-IncomingFile::~IncomingFile() {
+IncomingFile::~IncomingFile() { drop_file(); }
+
+/// The room is given back after the file. unlink() fails when a store has renamed the file.
+void IncomingFile::drop_file() {
     if (descriptor_ >= 0) ::close(descriptor_);
-    ::unlink(path_.c_str());  // fails when a store has renamed it
+    descriptor_ = -1;
+    if (has_file()) ::unlink(path_.c_str());
+    path_.clear();
+    share_.reset();
 }
 
 void IncomingFile::add(std::span<const std::byte> bytes) {
-    HAIRBAKE_ASSERT(descriptor_ >= 0);  // before finish()
+    HAIRBAKE_ASSERT(hex_.empty());  // before finish()
     if (bytes.size() > limit_ - bytes_)
         throw Refusal(Refused::too_large, "the body is longer than " + std::to_string(limit_) + " bytes");
-    if (share_) share_->grow(bytes.size());
-    write_all(descriptor_, bytes, path_);
+    if (has_file()) write(bytes);
     digest_.add(bytes);
     bytes_ += bytes.size();
+}
+
+void IncomingFile::write(std::span<const std::byte> bytes) try {
+    if (share_) share_->grow(bytes.size());
+    write_all(descriptor_, bytes, path_);
+} catch (const std::exception&) {  // no room in the store, or none on the disk
+    if (when_full_ == WhenFull::refuse) throw;
+    drop_file();
 }
 
 void IncomingFile::count() {
@@ -44,11 +61,18 @@ void IncomingFile::give_back() {
 }
 
 void IncomingFile::finish() {
+    if (has_file()) close_file();
+    hex_ = digest_.hex();
+}
+
+void IncomingFile::close_file() try {
     sync_file(descriptor_, path_);
     const int closed = ::close(descriptor_);
     descriptor_ = -1;
     if (closed != 0) throw_store_error(path_, errno);
-    hex_ = digest_.hex();
+} catch (const std::exception&) {
+    if (when_full_ == WhenFull::refuse) throw;
+    drop_file();
 }
 
 }  // namespace hairbake

@@ -20,6 +20,12 @@ void forget_bakes(Sql& sql, const std::vector<SqlRow>& bakes) {
     }
 }
 
+void forget_done_bakes(Sql& sql, const std::string& stage) {
+    forget_bakes(sql, sql.rows("SELECT b.seq, b.id, b.state FROM bake_stages m JOIN bakes b ON b.seq = m.bake WHERE "
+                               "m.stage = ? AND b.state = 'done'",
+                               {stage}));
+}
+
 void prune(Database& database, double time) {
     database.write([&](Sql& sql) {
         sql.run(

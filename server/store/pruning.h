@@ -1,6 +1,7 @@
 // Forgets old records of work that ended without a result.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "server/store/database.h"
@@ -15,5 +16,9 @@ void prune(Database& database, double time);
 /// Removes the rows of bakes (columns seq, id, state) and notes their ids: a client that asks for one learns that there
 /// was one. Their stages stay.
 void forget_bakes(Sql& sql, const std::vector<SqlRow>& bakes);
+
+/// The same for the done bakes of a stage whose result goes. Failed and cancelled ones have no result: their records
+/// stay for their time.
+void forget_done_bakes(Sql& sql, const std::string& stage);
 
 }  // namespace hairbake

@@ -13,13 +13,14 @@ enum class Refused {
     malformed,      ///< not of the form that the route takes
     unprocessable,  ///< well-formed, and a field's value is not allowed
     not_found,
-    gone,       ///< it was there and was removed
-    conflict,   ///< with the present state of the service
-    too_large,  ///< more bytes than allowed
-    too_many,   ///< one token has too many of something
-    too_slow,   ///< the body did not arrive in time
-    full,       ///< the store's budget is used up
-    busy        ///< try again later
+    gone,        ///< it was there and was removed
+    conflict,    ///< with the present state of the service
+    too_large,   ///< more bytes than allowed
+    too_many,    ///< one token has too many of something
+    too_slow,    ///< the body did not arrive in time
+    full,        ///< the store's budget is used up
+    unwritable,  ///< the system does not let the daemon write its files
+    busy         ///< try again later
 };
 
 /// `field` is the field at fault or empty. The message tells what was found and what is allowed; control characters in

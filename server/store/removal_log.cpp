@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "server/store/file_system.h"
 #include "server/store/refusal.h"
+#include "server/store/store_advice.h"
 
 namespace hairbake {
 namespace fs = std::filesystem;
@@ -22,8 +23,9 @@ void require_removable(const fs::path& file) try {
         throw_store_error(file, errno);
     }
     if (::faccessat(AT_FDCWD, file.parent_path().c_str(), W_OK | X_OK, AT_EACCESS) != 0) throw_store_error(file, errno);
+    if (protecting_attribute(file) || protecting_attribute(file.parent_path())) throw_store_error(file, EPERM);
 } catch (const Error& error) {  // no full disk, for which a deletion has a reserve (disk_reserve.h)
-    throw Refusal(Refused::full, error.what());
+    throw Refusal(Refused::unwritable, error.what());
 }
 
 void remove_counted(const fs::path& file, FileCount& count) {

@@ -256,8 +256,8 @@ std::optional<std::string> Room::disk_warning() {
     if (usable >= limits_.budget) return std::nullopt;
     return "budget_mb is " + mb(limits_.budget) + "; the disk of " + folder_.string() + " has room for " + mb(usable) +
            " MB of the store, with keep_free_mb = " + mb(limits_.keep_free) +
-           ": before the budget is used up the disk is, and then uploads are refused and nothing is evicted. Lower "
-           "budget_mb, or use a larger disk";
+           ". The disk fills up before results are evicted, and uploads are refused then. Lower budget_mb, or use a "
+           "larger disk";
 }
 
 std::optional<std::string> Room::input_warning() {

@@ -41,6 +41,12 @@ std::string owner_and_mode(const fs::path& path) {
 
 std::string advice_to_open(const fs::path& path) {
     const fs::path closed = closed_at(path);
+    for (const fs::path& place : {path, closed, path.parent_path()})
+        if (const std::optional<char> attribute = protecting_attribute(place))
+            return place.string() + " has the attribute " + *attribute +
+                   (*attribute == 'i' ? " (immutable)" : " (append only)") +
+                   ", which forbids all users to change it. " + "Take it away: `chattr -" + *attribute + " " +
+                   place.string() + "`";
     const std::string user = std::to_string(::geteuid()), facts = owner_and_mode(closed);
     return "This program runs as user " + user + " and may not use " + closed.string() +
            (facts.empty() ? "" : ": " + facts) + ". Give owner and mode back: `chown " + user + " " + closed.string() +
@@ -48,6 +54,14 @@ std::string advice_to_open(const fs::path& path) {
 }
 
 }  // namespace
+
+std::optional<char> protecting_attribute(const fs::path& path) {
+    struct statx facts {};
+    if (::statx(AT_FDCWD, path.c_str(), 0, 0, &facts) != 0) return std::nullopt;
+    if (facts.stx_attributes & STATX_ATTR_IMMUTABLE) return 'i';
+    if (facts.stx_attributes & STATX_ATTR_APPEND) return 'a';
+    return std::nullopt;
+}
 
 std::string advice_for(const fs::path& path, int error) {
     switch (error) {

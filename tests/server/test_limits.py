@@ -100,6 +100,8 @@ class Connections(unittest.TestCase):
                 self.assertEqual(received(s, 25), b"HTTP/1.1 100 Continue\r\n\r\n")
                 held.append(s)
             idle = [d.connect() for _ in range(3)]  # these fill the queue, in the order in which they came
+            for s in idle:
+                s.sendall(b"GET /he")  # one that sent nothing would make room
             reply = d.ask("GET", "/healthz")
             self.assertEqual((reply.status, reply.headers["Retry-After"], reply.headers["Content-Type"]),
                              (503, "2", "application/problem+json"))

@@ -4,7 +4,7 @@ import subprocess
 import time
 import unittest
 
-from harness import PATIENCE, Daemon, hair_bytes, hdr_bytes, quick_request
+from harness import PATIENCE, Daemon, hair_bytes, hdr_bytes, quick_request, slow_request
 from pathlib import Path
 
 PYTHON_CLIENT = Path(__file__).resolve().parents[2] / "clients/python"
@@ -93,6 +93,38 @@ class Removed(unittest.TestCase):
             for bake, state in ((failed, "failed"), (cancelled, "cancelled")):
                 self.assert_gone(d.ask("GET", f"/v1/bakes/{bake}"),
                                  f"bake {bake} ended as {state}, and its record was removed at 20.*sent again bakes it anew")
+
+    def test_a_failed_bake_keeps_its_record_when_its_other_stage_is_evicted(self):
+        """Fault: 410, and the reason was lost. Relatives: a cancelled bake, after a restart, the same request sent again."""
+        with Daemon(config=SMALL) as d:
+            sky = d.put(hdr_bytes())
+            other = large_request(sky)
+            bakes = {"done": other, "failed": {**other, "hair": f"sha256:{d.put(b'no hair model')}"},
+                     "cancelled": {**slow_request(d.put(hair_bytes())), **{k: other[k] for k in ("environment", "irradiance")}}}
+            ids = {}
+            for state, request in bakes.items():
+                ids[state] = d.ask("POST", "/v1/bakes", request).json["id"]
+                if state == "cancelled":
+                    self.assertEqual(d.ask("DELETE", f"/v1/bakes/{ids[state]}").status, 200)
+                self.assertEqual(d.wait(ids[state])["state"], state)
+            error = d.ask("GET", f"/v1/bakes/{ids['failed']}").json["error"]
+            self.assertEqual(error["kind"], "bad_input")
+            filler = d.put(os.urandom(600_000))
+            for _ in range(2):
+                self.assert_gone(d.ask("GET", f"/v1/bakes/{ids['done']}"), "to make room")
+                for state in ("failed", "cancelled"):
+                    reply = d.ask("GET", f"/v1/bakes/{ids[state]}")
+                    self.assertEqual((reply.status, reply.json["state"]), (200, state), reply.body)
+                    stages = {stage["kind"]: stage["state"] for stage in reply.json["stages"]}
+                    self.assertEqual(stages, {"transmittance": state, "irradiance": "cancelled"})
+                    self.assertEqual(reply.json["error"], error if state == "failed" else None)
+                d.stop()
+                d.start()
+            self.assertEqual(d.ask("DELETE", f"/v1/blobs/{filler}").status, 204)
+            for state in ("failed", "done"):
+                again = d.ask("POST", "/v1/bakes", bakes[state])
+                self.assertEqual(again.json["id"], ids[state])
+                self.assertEqual(d.wait(ids[state])["state"], state)
 
 
 if __name__ == "__main__":

@@ -128,6 +128,14 @@ class SlowHeads(unittest.TestCase):
             self.assert_healthy(d)
             self.assertLess(time.monotonic() - begin, 10)  # 250 of them need 4 s: a second for each 64
 
+    def test_relative_more_idle_connections_than_may_wait(self):
+        """Fault: 64 kept the threads and 256 the queue, and everybody else got 503."""
+        with Daemon() as d, contextlib.ExitStack() as stack:
+            for _ in range(3):
+                for _ in range(400):
+                    stack.enter_context(d.connect())
+                self.assert_healthy(d)
+
     def test_relative_a_head_that_comes_slowly_is_served_while_no_other_waits(self):
         with Daemon() as d, d.connect() as s:
             for byte in b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n":

@@ -109,7 +109,8 @@ class Troubles(unittest.TestCase):
             hair = d.put(hair_bytes())
             d.program.unlink()
             bakes = d.post(hair, 100)
-            missing = f"the worker program {d.program} cannot be started: No such file or directory"
+            missing = (f"the worker program {d.program} cannot be started: No such file or directory. Install hairbake again, or "
+                       "let [workers] program name the file")
             d.wait_for_pause(missing)
             self.assertEqual(d.metric("hairbake_queue_paused"), [f'hairbake_queue_paused{{reason="{missing}"}} 1'])
             last = d.ask("GET", f"/v1/bakes/{bakes[-1]}").json  # it was not tried yet
@@ -197,6 +198,9 @@ class Troubles(unittest.TestCase):
         def no_right(d):
             d.program.chmod(0o600)
 
+        def no_interpreter(d):
+            d.program.write_bytes(b"#!/nowhere/sh\n")
+
         def ends(d):
             d.program.write_bytes(b"#!/bin/sh\nexit 127\n")
 
@@ -205,7 +209,8 @@ class Troubles(unittest.TestCase):
 
         with Queue(workers=2, max_crashes=0) as d:
             hair = d.put(hair_bytes())
-            for number, (spoil, word) in enumerate({no_program: "Exec format error", no_right: "Permission denied",
+            for number, (spoil, word) in enumerate({no_program: "install hairbake again", no_right: f"`chmod a+rx {d.program}`",
+                                                    no_interpreter: "the interpreter that it names is missing",
                                                     ends: "code 127", crashes: "Illegal instruction"}.items()):
                 d.program.unlink()  # not the bytes of a worker that runs
                 d.heal()
@@ -223,7 +228,8 @@ class Troubles(unittest.TestCase):
             hair = d.put(hair_bytes())
             d.limit_processes(1)
             bakes = d.post(hair, 20)
-            d.wait_for_pause("Resource temporarily unavailable")
+            self.assertRegex(d.wait_for_pause("Resource temporarily unavailable"),
+                             r"The system gives user \d+ no more processes.*TasksMax.*lower \[workers\] count")
             d.limit_processes()
             self.assert_all_done(d, bakes)
             self.assert_over(d)
