@@ -58,8 +58,10 @@ class Texts(unittest.TestCase):
                 self.assertEqual(d.ask("GET", f"/v1/blobs/{wrong}").status, 422, wrong)
 
     def test_a_deletion_says_as_what_the_file_is_stored(self):
+        """Fault: a file without a kind was "stored as the kind mesh". Relative: one that a name uses as an environment."""
         with Daemon() as d:
             hair, mesh = d.put(hair_bytes()), d.put(b"a mesh")
+            self.assertEqual(d.ask("PUT", "/v1/names/environment/dusk", {"sha256": mesh}).status, 200)
             self.assertEqual(d.ask("POST", "/v1/models", {"sha256": hair}).status, 201)
             for path, status, words in ((f"/v1/blobs/{hair}", 409, f"the kind model; DELETE /v1/models/{hair} deletes it"),
                                         (f"/v1/environments/{hair}", 404, f"the kind model; DELETE /v1/models/{hair} deletes it"),

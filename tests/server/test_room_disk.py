@@ -193,12 +193,17 @@ exec {PROGRAMS / "hairbake-worker"} "$@"
         return d, bakes
 
     def test_bakes_that_hold_the_room_of_each_other_come_one_after_the_other(self):
-        """Fault: they waited for each other for ever. Relatives: the older goes first; the one with the higher priority does."""
+        """Fault: they waited for each other for ever. Relatives: the older goes first; the one with the higher priority does; a
+        cancelled bake of the maps that give way keeps its record."""
         for priorities, first in (((0, 0), 0), ((0, 5), 1)):
             d, bakes = self.two_bakes_that_hold_each_others_room(priorities)
             with self.subTest(priorities), contextlib.ExitStack() as stack:
                 stack.push(d)
                 begin = (d.path / "log").stat().st_size
+                view = d.ask("GET", f"/v1/bakes/{bakes[1 - first]}").json
+                request = {**view["request"], "transmittance": {**view["request"]["transmittance"], "seed": 9}}
+                cancelled = d.ask("POST", "/v1/bakes", request).json["id"]
+                self.assertEqual(d.ask("DELETE", f"/v1/bakes/{cancelled}").status, 200)
                 d.go.touch()
                 ends = []
 
@@ -212,6 +217,7 @@ exec {PROGRAMS / "hairbake-worker"} "$@"
                 self.assertEqual(ends, [bakes[first], bakes[1 - first]])
                 log = (d.path / "log").read_text()[begin:]
                 self.assertEqual(log.count("an earlier bake needs the room"), 1, log)
+                self.assertEqual(d.ask("GET", f"/v1/bakes/{cancelled}").json["state"], "cancelled")
                 last = d.ask("GET", f"/v1/bakes/{bakes[1 - first]}").json
                 self.assertEqual(len(last["files"]), 7, last["files"])
                 for file in last["files"]:

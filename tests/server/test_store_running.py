@@ -155,6 +155,19 @@ class RemovalLog(unittest.TestCase):
             self.assertIn((len({f["sha256"] for f in files}), sum({f["sha256"]: f["bytes"] for f in files}.values()),
                            "the budget is used up; least recently used first"), self.removals(d))
 
+    def test_a_start_counts_lost_and_found_after_the_last_move(self):
+        """Fault: an unknown upload was moved after the count. Relative: a second start counts the same."""
+        with Daemon() as d:
+            d.stop()
+            unknown = "0" * 64
+            (d.blob_file(unknown)).write_bytes(b"a blob")
+            (d.path / "store/uploads/unknown").write_bytes(b"an upload")
+            for _ in range(2):
+                (d.path / "log").write_text("")
+                d.start()
+                self.assertIn(f"{d.path}/store/lost+found holds 2 files of 15 bytes", (d.path / "log").read_text())
+                d.stop()
+
     def test_a_removal_that_a_kill_interrupted_is_completed_and_a_blob_that_came_again_stays(self):
         """Relative: files without a row that may go, and files without a row that may not."""
         with Daemon() as d:
