@@ -100,6 +100,8 @@ public:
     /// Returns the number that the file itself holds now (Sql::number_file).
     /// Throws as check_in_place().
     std::int32_t checkpoint();
+    /// The last number that was committed (Sql::number_file).
+    std::int32_t number() const { return last_number_; }
     /// From now on, a write() that makes the log longer than 1000 pages calls `act` instead of checkpoint(), which it
     /// must call.
     void when_log_is_long(std::function<void()> act);

@@ -192,7 +192,7 @@ void StoreIdentity::accept(const fs::path& folder, Database& database) {
         if (mark) both = *mark;
         if (!mark) both.id = rows.empty() ? random_name() : rows[0].text(0);
         if (!rows.empty()) both.generation = std::max(both.generation, rows[0].integer(1));
-        ++both.generation;
+        both.generation = std::max<std::int64_t>(both.generation, database.number()) + 1;
         sql.run("DELETE FROM store");
         sql.run("INSERT INTO store(id, generation, accepted) VALUES(?, ?, 1)", {both.id, both.generation});
         sql.number_file(static_cast<std::int32_t>(both.generation));
