@@ -130,7 +130,7 @@ auto opening(const Settings& settings, const Open& open) {
     try {
         return open();
     } catch (const SpoiledDatabase& error) {
-        throw stop(error.what(), "The file " + database + " is spoiled. " + advice_for_broken_database);
+        throw Error(ErrorKind::bad_input, failed + error.what());
     } catch (const Error& error) {
         if (error.kind() == ErrorKind::internal) throw stop(error.what(), check + advice_for_broken_database);
         if (error.kind() == ErrorKind::out_of_resources) throw Error(error.kind(), failed + error.what());

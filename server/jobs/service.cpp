@@ -94,6 +94,7 @@ struct Service::Parts {
         if (recovered.planned_again)
             spdlog::info("{} queued stages of another version of hairbake were planned again", recovered.planned_again);
         begin_generation();
+        database.when_log_is_long([this] { identity.advance(); });
         spdlog::info("the store {} has the id {}", settings.store.string(), identity.id());
         reserve.fill();
         for (const std::string& warning : room.warnings()) spdlog::warn("{}", warning);
@@ -266,6 +267,7 @@ std::string Service::not_ready() {
         return "the queue is paused and tries again by itself: " + reason;
     try {
         parts_->database.check_in_place();
+        parts_->identity.check_recorded();
         parts_->folder.check_usable();
         parts_->store.check_folders();
         IncomingFile probe(parts_->store.incoming_folder(), 16);

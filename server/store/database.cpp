@@ -1,16 +1,20 @@
 #include "server/store/database.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <spdlog/spdlog.h>
 #include <sqlite3.h>
 
-#include <cerrno>
 #include <map>
+#include <optional>
 #include <tuple>
+#include <utility>
 
 #include "core/base/error.h"
+#include "server/store/database_errors.h"
+#include "server/store/database_files.h"
+#include "server/store/file_system.h"
 #include "server/store/schema.h"
 #include "server/store/store_access.h"
-#include "server/store/store_advice.h"
 
 namespace hairbake {
 
@@ -33,23 +37,9 @@ double SqlRow::number(std::size_t column) const {
 
 namespace {
 
-/// `file` is the database's.
-[[noreturn]] void fail(const SQLite::Exception& error, const std::filesystem::path& file) {
-    const int code = error.getErrorCode() & 0xff;
-    const std::string name = "the database " + file.string();
-    if (code == SQLITE_FULL)
-        throw Error(ErrorKind::out_of_resources, name + " cannot grow: its disk is full. " + advice_for(file, ENOSPC),
-                    {}, ENOSPC);
-    if (code == SQLITE_READONLY || code == SQLITE_IOERR || code == SQLITE_CANTOPEN)
-        throw Error(ErrorKind::out_of_resources,
-                    name + " cannot be written: " + error.what() +
-                        ". Check that its disk has room and can be written, and that the "
-                        "daemon's user may write the file and its folder",
-                    {}, code == SQLITE_READONLY ? EROFS : EIO);
-    const std::string message = "the database: " + std::string(error.what());
-    if (code == SQLITE_CORRUPT || code == SQLITE_NOTADB) throw SpoiledDatabase(ErrorKind::internal, message);
-    throw Error(ErrorKind::internal, message);
-}
+constexpr int start_patience_ms = 5000, usual_patience_ms = 3000;
+constexpr int patience_while_locked_ms = 200;  ///< after a wait was in vain: the requests behind it wait for it, too
+constexpr int long_log = 1000;                 ///< pages
 
 SqlValue value_of(const SQLite::Column& column) {
     switch (column.getType()) {
@@ -82,8 +72,35 @@ void bind(SQLite::Statement& statement, const std::vector<SqlValue>& values) {
 
 class Database::Connection : public Sql {
 public:
-    Connection(const std::filesystem::path& file, int flags) : database(file.string(), flags) {
+    Connection(const std::filesystem::path& file, int flags) : database(file.string(), flags, start_patience_ms) {
         let_close_change_files(false);
+        ::sqlite3_wal_hook(  // in place of SQLite's own checkpoints
+            database.getHandle(),
+            [](void* self, sqlite3*, const char*, int pages) {
+                static_cast<Connection*>(self)->log_pages_ = pages;
+                return SQLITE_OK;
+            },
+            this);
+    }
+
+    /// After the last commit.
+    int log_pages() const { return log_pages_; }
+
+    /// How long a statement waits for the lock of another program.
+    void wait_at_most(int milliseconds) {
+        if (std::exchange(patience_ms_, milliseconds) != milliseconds)
+            ::sqlite3_busy_timeout(database.getHandle(), milliseconds);
+    }
+
+    std::int32_t number() { return database.execAndGet("PRAGMA application_id").getInt(); }
+
+    void number_file(std::int32_t number) override {
+        try {
+            database.exec("PRAGMA application_id = " + std::to_string(number));
+        } catch (const SQLite::Exception& error) {
+            throw_failed_statement(error, database.getFilename());
+        }
+        if (on_number) on_number(number);
     }
 
     /// The version of the file, 0 in an empty one, and how many tables and indices it has. Changes nothing.
@@ -112,7 +129,7 @@ public:
             prepared.reset();
             return changed;
         } catch (const SQLite::Exception& error) {
-            fail(error, database.getFilename());
+            throw_failed_statement(error, database.getFilename());
         }
     }
 
@@ -141,7 +158,7 @@ public:
                 if (!take(SqlRow(std::move(row)))) return;
             }
         } catch (const SQLite::Exception& error) {
-            fail(error, database.getFilename());
+            throw_failed_statement(error, database.getFilename());
         }
     }
 
@@ -152,6 +169,7 @@ public:
     }
 
     SQLite::Database database;
+    std::function<void(std::int32_t)> on_number;  ///< called after number_file()
 
 private:
     SQLite::Statement& prepare(std::string_view text, const std::vector<SqlValue>& values) {
@@ -168,6 +186,7 @@ private:
     }
 
     std::map<std::string, SQLite::Statement, std::less<>> statements_;
+    int log_pages_ = 0, patience_ms_ = start_patience_ms;
 };
 
 namespace {
@@ -191,16 +210,15 @@ void check_files(const std::filesystem::path& file) {
         check_access(file.parent_path(), (missing ? file : real).string() + end);
 }
 
-/// The file is not at fault then, so it must not be moved away.
-void throw_if_system_failed(const std::string& name, const SQLite::Exception& error) {
-    const int code = error.getErrorCode() & 0xff;
-    const std::string found = name + " cannot be opened: " + error.what();
-    if (code == SQLITE_FULL || code == SQLITE_NOMEM) throw Error(ErrorKind::out_of_resources, found);
-    if (code == SQLITE_CANTOPEN || code == SQLITE_READONLY || code == SQLITE_PERM || code == SQLITE_BUSY)
-        throw Error(ErrorKind::bad_input,
-                    found +
-                        ". Nothing was changed or removed. Check that the daemon's user may read and write it and "
-                        "its folder, and that no other program has it open");
+/// Page 1 of the log hides that of the file, so an older log would spoil the file.
+void check_log_is_younger(const std::filesystem::path& file, std::optional<std::int64_t> in_file, std::int32_t in_log) {
+    if (!in_file || *in_file <= in_log) return;
+    const std::string log = file.string() + "-wal";
+    throw Error(ErrorKind::bad_input,
+                "the log " + log + " is older than the database beside it: their numbers are " +
+                    std::to_string(in_log) + " and " + std::to_string(*in_file) +
+                    ". Nothing was changed or removed. Put back the -wal that was beside this database. If there was "
+                    "none, move this one away (with its -shm)");
 }
 
 }  // namespace
@@ -217,15 +235,35 @@ Database::Database(const std::filesystem::path& file, DatabaseHooks hooks) : hoo
 }
 
 void Database::open(const std::filesystem::path& file) {
+    std::error_code missing;
+    const std::filesystem::path there = std::filesystem::canonical(file, missing);
+    DatabaseFiles::require_room(missing ? file : there);
+    const std::optional<std::int64_t> in_file = DatabaseFiles::number_in(file);
+    open_connections(file);
+    const std::string real = std::filesystem::canonical(file).string();
+    files_ = std::make_unique<DatabaseFiles>(real);
+    check_log_is_younger(file, in_file, writer_->number());
+    least_number_ = static_cast<std::int32_t>(files_->number().value_or(0));
+    last_number_ = writer_->number();
+    writer_->on_number = [this](std::int32_t number) { last_number_ = number; };
+    const std::string save =
+        "Put back the file that was there before; docs/deployment.md tells how to save a deleted database";
+    pins_ = PinnedFiles({{file, save},
+                         {real + "-wal", save},
+                         {real + "-shm", "Put it back, or restart the daemon: SQLite makes a new one at the start"}});
+}
+
+void Database::open_connections(const std::filesystem::path& file) {
     const std::string name = "the database " + file.string();
     const std::string advice = std::string(". Nothing was removed. ") + advice_for_broken_database;
     const auto attempt = [&](const std::function<void()>& step) {
         try {
             step();
         } catch (const SQLite::Exception& error) {
-            throw_if_system_failed(name, error);
+            throw_if_system_failed(error, file);
             throw Error(ErrorKind::bad_input, name + " cannot be opened: " + error.what() + advice);
         } catch (const Error& error) {
+            if (error.kind() == ErrorKind::out_of_resources) throw;
             throw Error(ErrorKind::bad_input, name + " is not whole: " + error.what() + advice);
         }
     };
@@ -238,15 +276,11 @@ void Database::open(const std::filesystem::path& file) {
     if (version < schema_version && hooks_.before_upgrade) hooks_.before_upgrade(version);
     attempt([&] {
         writer_->prepare_file(version);
+        SQLite::Transaction(writer_->database, SQLite::TransactionBehavior::IMMEDIATE);  // nobody else holds the lock
         reader_ = std::make_unique<Connection>(file, SQLite::OPEN_READONLY);
         reader_->rows("SELECT count(*) FROM sqlite_master", {});  // opens its files
     });
-    const std::string real = std::filesystem::canonical(file).string();
-    const std::string save =
-        "Put back the file that was there before; docs/deployment.md tells how to save a deleted database";
-    pins_ = PinnedFiles({{file, save},
-                         {real + "-wal", save},
-                         {real + "-shm", "Put it back, or restart the daemon: SQLite makes a new one at the start"}});
+    for (const auto& connection : {writer_.get(), reader_.get()}) connection->wait_at_most(usual_patience_ms);
 }
 
 Database::~Database() {
@@ -272,21 +306,78 @@ void Database::remove_unused_log(const std::filesystem::path& file) {
 void Database::check_in_place() const {
     if (hooks_.before_write) hooks_.before_write();
     pins_.check();
+    files_->check(least_number_, last_number_);
+    const std::lock_guard held(finding_);
+    if (!spoiled_.empty()) throw SpoiledDatabase(Refused::busy, spoiled_);
+}
+
+/// A write into a spoiled file may spoil more.
+void Database::stay_away_if_spoiled(const std::function<void()>& work) {
+    try {
+        work();
+    } catch (const SpoiledDatabase& found) {
+        const std::lock_guard held(finding_);
+        spoiled_ = found.what();
+        throw;
+    }
 }
 
 void Database::write(const std::function<void(Sql&)>& body) {
     const auto held = lock();
     check_in_place();
+    stay_away_if_spoiled([&] { transact(body); });
+    keep_log_short();
+}
+
+void Database::transact(const std::function<void(Sql&)>& body) {
     try {
         // Rolled back by its destructor when the body throws.
         SQLite::Transaction transaction(writer_->database, SQLite::TransactionBehavior::IMMEDIATE);
+        writer_->wait_at_most(usual_patience_ms);
         body(*writer_);
         check_in_place();
         transaction.commit();
         ++version_;
     } catch (const SQLite::Exception& error) {
-        fail(error, writer_->database.getFilename());
+        if (is_locked(error)) writer_->wait_at_most(patience_while_locked_ms);
+        throw_failed_statement(error, writer_->database.getFilename());
     }
+}
+
+/// What was committed stays so when this fails. After a checkpoint that a reader hindered, the next one comes when the
+/// log has as many pages more.
+void Database::keep_log_short() {
+    const int pages = writer_->log_pages();
+    if (pages < long_log) next_checkpoint_ = long_log;
+    if (pages < next_checkpoint_ || is_shortening_) return;
+    struct Shortening {
+        bool& now;
+        explicit Shortening(bool& flag) : now(flag) { now = true; }
+        ~Shortening() { now = false; }
+    } const shortening{is_shortening_};
+    next_checkpoint_ = pages + long_log;
+    try {
+        act_on_long_log_ ? act_on_long_log_() : static_cast<void>(checkpoint());
+    } catch (const std::exception& error) {
+        spdlog::warn("the database's log cannot be shortened: {}", error_text(error));
+    }
+}
+
+void Database::when_log_is_long(std::function<void()> act) {
+    const auto held = lock();
+    act_on_long_log_ = std::move(act);
+}
+
+std::int32_t Database::checkpoint() {
+    const auto held = lock();
+    check_in_place();
+    try {
+        writer_->rows("PRAGMA wal_checkpoint(PASSIVE)", {});
+    } catch (const Error&) {  // the database file cannot grow
+    }
+    const auto number = static_cast<std::int32_t>(files_->number().value_or(0));
+    least_number_ = number;
+    return number;
 }
 
 bool Database::shrink_log() {
@@ -301,6 +392,10 @@ bool Database::shrink_log() {
 }
 
 void Database::read(const std::function<void(Sql&)>& body) {
+    stay_away_if_spoiled([&] { read_once(body); });
+}
+
+void Database::read_once(const std::function<void(Sql&)>& body) {
     const std::unique_lock held(reading_);
     if (in_read_) return body(*reader_);  // inside another read(): the same state
     struct Reading {
@@ -319,7 +414,7 @@ void Database::read(const std::function<void(Sql&)>& body) {
         }
         reader_->run("ROLLBACK", {});  // there is nothing to commit
     } catch (const SQLite::Exception& error) {
-        fail(error, writer_->database.getFilename());
+        throw_failed_statement(error, writer_->database.getFilename());
     }
 }
 

@@ -13,8 +13,8 @@
 #include <variant>
 #include <vector>
 
-#include "core/base/error.h"
 #include "server/store/pinned_files.h"
+#include "server/store/refusal.h"
 
 namespace hairbake {
 
@@ -34,10 +34,12 @@ private:
     std::vector<SqlValue> values_;
 };
 
-/// SQLite found the file spoiled; the kind is internal.
-class SpoiledDatabase : public Error {
+class DatabaseFiles;
+
+/// SQLite found the file spoiled. The message names the file and tells what to do.
+class SpoiledDatabase : public Refusal {
 public:
-    using Error::Error;
+    using Refusal::Refusal;
 };
 
 /// What to do with a database that is broken.
@@ -47,8 +49,8 @@ constexpr const char* advice_for_broken_database =
     "start with a new one: blobs/ in the old one still holds every input under its SHA-256";
 
 /// Runs statements inside a transaction of Database. Statements are prepared once and kept.
-/// Throws Error(out_of_resources) for a full or read-only disk, SpoiledDatabase for a broken file, Error(internal) for
-/// other failures.
+/// Throws Error(out_of_resources) for a full or read-only disk, SpoiledDatabase for a broken file, Refusal(busy) when
+/// another program holds the lock of the database for seconds, Error(internal) for other failures.
 class Sql {
 public:
     virtual ~Sql() = default;
@@ -59,6 +61,8 @@ public:
     /// statements, not this one.
     virtual void each(std::string_view statement, const std::vector<SqlValue>& values,
                       const std::function<bool(const SqlRow&)>& take) = 0;
+    /// Writes the number into the header of the database file (SQLite's application_id). It must grow.
+    virtual void number_file(std::int32_t number) = 0;
 };
 
 /// What the owner of a database's folder checks. Empty functions check nothing; each may throw.
@@ -74,11 +78,13 @@ public:
     /// Opens or makes `file` and its tables; brings a database of an earlier version to this one.
     /// Throws Error(bad_input), telling what to do, when the file is no database of the service, broken, of a later
     /// version, or may not be read and written. It leaves no file behind that was not there before.
-    /// Throws Error(out_of_resources) when memory or disk are short.
+    /// Throws Error(out_of_resources) when memory or disk are short, or when another program holds the lock of the
+    /// database for seconds.
     explicit Database(const std::filesystem::path& file, DatabaseHooks hooks = {});
     ~Database();
 
-    /// Throws Refusal(busy) when the file, its -wal or its -shm was moved, deleted or replaced.
+    /// Throws Refusal(busy) when the file, its -wal or its -shm was moved, deleted, replaced or overwritten.
+    /// Throws SpoiledDatabase when SQLite found the file spoiled since the start.
     /// Throws what the hook before_write throws.
     void check_in_place() const;
 
@@ -90,6 +96,15 @@ public:
     /// Writes the log into the database file and cuts it to nothing, as far as no reader uses it and the disk allows.
     /// Returns whether the log is empty now. Call it outside of read() and write().
     bool shrink_log();
+    /// Writes the log into the database file, as far as no reader uses it and the disk allows; waits for nobody.
+    /// Returns the number that the file itself holds now (Sql::number_file).
+    /// Throws as check_in_place().
+    std::int32_t checkpoint();
+    /// The last number that was committed (Sql::number_file).
+    std::int32_t number() const { return last_number_; }
+    /// From now on, a write() that makes the log longer than 1000 pages calls `act` instead of checkpoint(), which it
+    /// must call.
+    void when_log_is_long(std::function<void()> act);
     /// Grows with each write(), before it returns. A read() that began after this call is current while the number
     /// stays.
     std::uint64_t version() const { return version_; }
@@ -101,12 +116,24 @@ public:
 private:
     class Connection;
     void open(const std::filesystem::path& file);
+    void open_connections(const std::filesystem::path& file);
+    void transact(const std::function<void(Sql&)>& body);
+    void read_once(const std::function<void(Sql&)>& body);
+    void keep_log_short();
+    void stay_away_if_spoiled(const std::function<void()>& work);
     void remove_unused_log(const std::filesystem::path& file);
 
     std::recursive_mutex writing_, reading_;  ///< taken in this order
     const DatabaseHooks hooks_;
+    std::unique_ptr<DatabaseFiles> files_;                          ///< closed after the connections
+    std::atomic<std::int32_t> least_number_ = 0, last_number_ = 0;  ///< that the file itself may hold
     std::unique_ptr<Connection> writer_, reader_;
-    PinnedFiles pins_;  ///< the files that both connections have open
+    PinnedFiles pins_;                       ///< the files that both connections have open
+    std::function<void()> act_on_long_log_;  ///< guarded by writing_, as the next two
+    bool is_shortening_ = false;
+    int next_checkpoint_ = 0;  ///< pages of the log
+    mutable std::mutex finding_;
+    std::string spoiled_;  ///< guarded by finding_
     std::atomic<std::uint64_t> version_ = 0;
     bool in_read_ = false;            ///< guarded by reading_
     std::uint64_t version_read_ = 0;  ///< guarded by reading_

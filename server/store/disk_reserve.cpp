@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <spdlog/spdlog.h>
 #include <sys/stat.h>
-#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -18,12 +17,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::uint64_t page = 4096;
-
-/// 0 when the system does not tell.
-std::uint64_t free_bytes(const fs::path& folder) {
-    struct statvfs disk {};
-    return ::statvfs(folder.c_str(), &disk) == 0 ? static_cast<std::uint64_t>(disk.f_bavail) * disk.f_frsize : 0;
-}
 
 /// Of a regular file; 0 when there is none.
 std::uint64_t size_of(const fs::path& file) {

@@ -46,6 +46,9 @@ void sync_folder(const std::filesystem::path& folder);
 /// Makes the folder and its missing parents.
 void make_folder(const std::filesystem::path& folder);
 
+/// Bytes that this process may write on the disk of the folder; 0 when the system does not tell.
+std::uint64_t free_bytes(const std::filesystem::path& folder);
+
 /// 128 random bits as 32 hexadecimal digits, from the kernel.
 std::string random_name();
 

@@ -46,12 +46,12 @@ Descriptor lock_path(const fs::path& path, int flags, const fs::path& store) {
 /// The folder and its parts with what a person can do when one is gone or replaced. A restart takes what is there then.
 std::vector<PinnedFiles::Path> pinned_parts(const fs::path& folder) {
     const std::string restart = "Put it back, or restart the daemon, which makes a new one";
-    return {{folder, "Put the folder back that was there before"},
-            {folder / "lock", restart},
-            {folder / "tmp", restart},
-            {folder / "uploads", restart + "; the unfinished uploads in the old one are lost then"},
-            {folder / "blobs",
-             "Put the folder back that was there before. To use what is there now, restart the daemon"}};
+    return {
+        {folder, "Put the folder back that was there before"},
+        {folder / "lock", restart},
+        {folder / "tmp", restart},
+        {folder / "uploads", restart + "; the unfinished uploads in the old one are lost then"},
+        {folder / "blobs", "Put the folder back that was there before. To use what is there now, restart the daemon"}};
 }
 
 void require_usable(const fs::path& folder) {
@@ -101,6 +101,7 @@ StoreFolder::StoreFolder(fs::path folder, const std::string& expected_id, StoreU
     folder_lock_ = lock_path(path_, O_RDONLY | O_DIRECTORY, path_);
     check_database_file();
     check_parts();
+    StoreIdentity::check_log_belongs(path_, database());
     lock_ = lock_path(path_ / "lock", O_RDWR | O_CREAT, path_);
     make_parts();
     pins_ = PinnedFiles(pinned_parts(path_));

@@ -13,6 +13,7 @@
 
 #include "core/base/error.h"
 #include "server/store/database.h"
+#include "server/store/database_files.h"
 #include "server/store/file_system.h"
 #include "server/store/store_access.h"
 
@@ -43,13 +44,16 @@ std::optional<StoreIdentity::Mark> StoreIdentity::read_mark(const fs::path& fold
     if (!stream || id_word != "id" || generation_word != "generation" || mark.id.size() != 32)
         throw Error(ErrorKind::bad_input,
                     "the file " + file.string() + " is no id of a store" + is_untouched + advice_to_accept);
+    std::string header_word;  // absent in the file of an earlier program
+    if (!(stream >> header_word >> mark.header) || header_word != "header") mark.header = 0;
     return mark;
 }
 
 /// The file appears whole or not at all.
 void StoreIdentity::write_mark(const fs::path& folder, const Mark& mark) {
     const fs::path file = folder / file_name, next = folder / "tmp" / random_name();
-    const std::string text = "id " + mark.id + "\ngeneration " + std::to_string(mark.generation) + "\n";
+    const std::string text = "id " + mark.id + "\ngeneration " + std::to_string(mark.generation) + "\nheader " +
+                             std::to_string(mark.header) + "\n";
     try {
         const Descriptor written(::open(next.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0640));
         if (!written) throw_store_error(next, errno);
@@ -114,14 +118,57 @@ void StoreIdentity::compare(const Mark& row) const {
              std::string("Put the newer folder back. ") + advice_to_accept);
 }
 
+void StoreIdentity::check_log_belongs(const fs::path& folder, const fs::path& database) {
+    std::error_code missing;
+    const fs::path log = fs::canonical(database, missing).string() + "-wal";
+    if (missing || fs::file_size(log, missing) == 0 || missing) return;
+    std::optional<Mark> mark;
+    try {
+        mark = read_mark(folder);
+    } catch (const Error& error) {  // a file that is no id: compare() says so
+        if (error.system_error() != 0) throw;
+    }
+    const std::optional<std::int64_t> header = DatabaseFiles::number_in(database);
+    if (!mark || !header || *header >= mark->header) return;
+    throw Error(ErrorKind::bad_input,
+                "the database " + database.string() + " is older than the store, and the " + log.filename().string() +
+                    " beside it is that of a newer one: generation " + std::to_string(*header) +
+                    " stands in its header; that of the store's database is " + std::to_string(mark->header) +
+                    " or more" + is_untouched +
+                    "Put the newer database back beside its -wal. To work with this one all the same, move that -wal "
+                    "and its -shm away and run `hairbaked store accept --config FILE`: the next start then moves files "
+                    "that the database does not know to lost+found");
+}
+
 /// The next generation is counted from the file's, so a failure to write the file does not let the database run ahead.
+/// The checkpoint comes first: so the new generation is in the log, and a database that loses its log is told.
 void StoreIdentity::advance() {
+    const auto held = database_.lock();  // before mutex_: a writer may hold it and call this
     const std::lock_guard lock(mutex_);
-    const std::int64_t next = generation_ + 1;
-    database_.write([&](Sql& sql) { sql.run("UPDATE store SET generation = ?, accepted = 0", {next}); });
+    const Mark next{id_, generation_ + 1, database_.checkpoint()};
+    database_.write([&](Sql& sql) {
+        sql.run("UPDATE store SET generation = ?, accepted = 0", {next.generation});
+        sql.number_file(static_cast<std::int32_t>(next.generation));
+    });
     version_ = database_.version();
-    write_mark(folder_, {id_, next});
-    generation_ = next;
+    record(next);
+}
+
+/// The caller holds mutex_.
+void StoreIdentity::record(const Mark& mark) try {
+    unrecorded_ = mark;
+    write_mark(folder_, mark);
+    generation_ = mark.generation;
+    unrecorded_.reset();
+} catch (const std::exception& error) {
+    throw Error(ErrorKind::out_of_resources,
+                "the file " + (folder_ / file_name).string() +
+                    " cannot be written, so a start with an older database would not be noticed: " + error_text(error));
+}
+
+void StoreIdentity::check_recorded() {
+    const std::lock_guard lock(mutex_);
+    if (unrecorded_) record(Mark(*unrecorded_));
 }
 
 void StoreIdentity::advance_if_changed() {
@@ -145,10 +192,12 @@ void StoreIdentity::accept(const fs::path& folder, Database& database) {
         if (mark) both = *mark;
         if (!mark) both.id = rows.empty() ? random_name() : rows[0].text(0);
         if (!rows.empty()) both.generation = std::max(both.generation, rows[0].integer(1));
-        ++both.generation;
+        both.generation = std::max<std::int64_t>(both.generation, database.number()) + 1;
         sql.run("DELETE FROM store");
         sql.run("INSERT INTO store(id, generation, accepted) VALUES(?, ?, 1)", {both.id, both.generation});
+        sql.number_file(static_cast<std::int32_t>(both.generation));
     });
+    both.header = 0;  // that of the file itself
     write_mark(folder, both);
 }
 

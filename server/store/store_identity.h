@@ -19,6 +19,10 @@ class Database;
 /// that is so young that it has the present generation is not told: its start removes no files either, it moves those
 /// that it does not know to lost+found.
 ///
+/// The header of the database file holds a generation, too (Sql::number_file), and `store-id` the one that the file
+/// itself held, without its log, when the generation began. A file whose header is of an earlier generation is an older
+/// copy, even when the -wal of the newer database lies beside it.
+///
 /// Thread-safe.
 class StoreIdentity {
 public:
@@ -34,6 +38,10 @@ public:
     /// Throws Error(bad_input), telling what to do, when the two do not belong together.
     StoreIdentity(std::filesystem::path folder, Database& database, const std::string& expected_id);
 
+    /// Before the database is opened: SQLite would take the pages of the log beside it for its own.
+    /// Throws Error(bad_input), telling what to do, when the -wal is that of a newer database.
+    static void check_log_belongs(const std::filesystem::path& folder, const std::filesystem::path& database);
+
     /// 32 hexadecimal digits.
     const std::string& id() const { return id_; }
     /// Whether accept() came since the last start: then stored files may be missing.
@@ -44,6 +52,9 @@ public:
     void advance();
     /// advance() if the database has changed since the last call.
     void advance_if_changed();
+    /// Writes the file `store-id` if advance() could not.
+    /// Throws Error(out_of_resources) with the reason when it still cannot be written.
+    void check_recorded();
 
     /// Makes the folder and the database one store of the present generation, whatever they were before. Keeps the
     /// folder's id if it has one. When root runs it, the file gets the owner of the folder.
@@ -54,18 +65,21 @@ private:
     struct Mark {
         std::string id;
         std::int64_t generation = 0;
+        std::int64_t header = 0;  ///< least generation in the header of the database file; 0: not known
     };
     static std::optional<Mark> read_mark(const std::filesystem::path& folder);
     static void write_mark(const std::filesystem::path& folder, const Mark& mark);
     void compare(const Mark& row) const;
+    void record(const Mark& mark);
 
     std::filesystem::path folder_;
     Database& database_;
     std::string id_;
     bool accepted_ = false;
-    std::mutex mutex_;             ///< guards the members below
-    std::int64_t generation_ = 0;  ///< that the file has
-    std::uint64_t version_ = 0;    ///< Database::version() at the last advance()
+    std::mutex mutex_;                ///< guards the members below
+    std::int64_t generation_ = 0;     ///< that the file has
+    std::uint64_t version_ = 0;       ///< Database::version() at the last advance()
+    std::optional<Mark> unrecorded_;  ///< that the file should have
 };
 
 }  // namespace hairbake

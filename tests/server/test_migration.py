@@ -119,6 +119,7 @@ class Migration(unittest.TestCase):
             d.stop()
             (d.path / "store/store-id").unlink()
             d.run_sql("UPDATE store SET generation = 0")
+            d.run_sql("PRAGMA application_id = 0")
             d.start()
             self.assert_serves(d)
 
