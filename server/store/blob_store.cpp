@@ -69,9 +69,9 @@ BlobStore::BlobStore(const fs::path& folder, Database& database)
     constexpr char digits[] = "0123456789abcdef";
     for (const char high : std::string(digits))
         for (const char low : std::string(digits)) {
-            const fs::path folder = folder_ / "blobs" / std::string{high, low};
-            make_folder(folder);
-            folders_.emplace_back(std::vector<PinnedFiles::Path>{{folder, advice_for_folder}});
+            const fs::path part = folder_ / "blobs" / std::string{high, low};
+            make_folder(part);
+            folders_.emplace_back(std::vector<PinnedFiles::Path>{{part, advice_for_folder}});
         }
     sync_folder(folder_ / "blobs");
     sync_folder(folder_);
