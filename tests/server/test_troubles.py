@@ -281,7 +281,7 @@ class Troubles(unittest.TestCase):
             with contextlib.closing(sqlite3.connect(d.path / "store/hairbake.db", isolation_level=None)) as database:
                 database.execute("BEGIN IMMEDIATE")
                 d.heal()
-                d.wait_for_pause("database is locked")
+                d.wait_for_pause("another program holds the lock of the database")
                 database.execute("ROLLBACK")
             self.assert_all_done(d, bakes)
             self.assert_over(d)
