@@ -11,6 +11,7 @@
 
 #include "core/bake.h"
 #include "core/base/error.h"
+#include "core/base/luminance.h"
 #include "core/base/naming_file.h"
 #include "core/base/parallel.h"
 #include "core/environment/light_set.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "core/base/luminance.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
 

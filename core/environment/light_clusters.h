@@ -31,7 +31,4 @@ std::vector<ClusteredLight> cluster_lights(const LightSet& lights, std::size_t c
 /// A cluster of its own for each of the request's lights: these have no size.
 std::vector<ClusteredLight> as_clusters(const std::vector<DirectionalLight>& lights);
 
-/// Rec. 709.
-inline double luminance(const Vec3d& rgb) { return 0.2126 * rgb.x + 0.7152 * rgb.y + 0.0722 * rgb.z; }
-
 }  // namespace hairbake

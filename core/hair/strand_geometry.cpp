@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 #include <string>
 
@@ -121,6 +122,12 @@ void check_for_stray_point(const HairModel& model, const StrandGeometry& geometr
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> all_vertices(const StrandGeometry& strands) {
+    std::vector<std::uint32_t> vertices(strands.vertex_count());
+    std::iota(vertices.begin(), vertices.end(), 0u);
+    return vertices;
+}
 
 OwnSegments own_segments(const StrandGeometry& strands, std::uint32_t v) {
     HAIRBAKE_ASSERT(v < strands.vertex_count());

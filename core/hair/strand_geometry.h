@@ -34,6 +34,9 @@ struct StrandGeometry {
     std::size_t vertex_count() const { return positions.size(); }
 };
 
+/// The indices of all vertices, ascending.
+std::vector<std::uint32_t> all_vertices(const StrandGeometry& strands);
+
 /// The segments of a vertex's own strand that do not shadow it: all solid segments i with first <= i <= last.
 struct OwnSegments {
     std::uint32_t first, last;

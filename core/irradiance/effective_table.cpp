@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/base/assert.h"
+#include "core/base/luminance.h"
 #include "core/base/parallel.h"
 #include "core/environment/cube_map.h"
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/base/luminance.h"
 #include "core/output/canvas.h"
 #include "core/output/hair_picture.h"
 #include "core/output/latlong_picture.h"

@@ -36,8 +36,6 @@ double exposure_for(std::vector<float> luminances) {
     return *tenth > 0 ? std::log2(0.35 / *tenth) : 0;
 }
 
-float luminance(const Vec3f& rgb) { return 0.2126f * rgb.x + 0.7152f * rgb.y + 0.0722f * rgb.z; }
-
 Color tone(const Vec3f& rgb, double stops) {
     const double scale = std::exp2(stops);
     const auto channel = [scale](double value) { return to_srgb(film(std::max(0.0, value * scale))); };

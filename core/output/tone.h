@@ -11,9 +11,6 @@ namespace hairbake {
 /// Stops that bring the brightest tenth of the values to a bright but unclipped tone; 0 where nine tenths are black.
 double exposure_for(std::vector<float> luminances);
 
-/// Rec. 709 luminance.
-float luminance(const Vec3f& rgb);
-
 /// Linear RGB times 2^stops through a filmic curve to 8-bit sRGB.
 Color tone(const Vec3f& rgb, double stops);
 

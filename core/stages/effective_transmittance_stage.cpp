@@ -1,8 +1,8 @@
 // Computes the transmittance under the bake's own light (effective_table.h).
 #include <algorithm>
-#include <numeric>
 #include <optional>
 
+#include "core/base/luminance.h"
 #include "core/base/naming_file.h"
 #include "core/environment/light_clusters.h"
 #include "core/hair/tangents.h"
@@ -61,9 +61,7 @@ std::vector<float> sum_up(TransmittanceMethod method, StageContext& context, con
                                    table.directions, table.sums(), progress);
     ProgressPart building = progress.part(0, 0.1), tracing = progress.part(0.1, 1);
     scene.emplace(strands, building, context.inputs.occluder());
-    std::vector<std::uint32_t> all(strands.vertex_count());
-    std::iota(all.begin(), all.end(), 0u);
-    return trace_weighted(*scene, all, table.directions, table.sums(), tracing);
+    return trace_weighted(*scene, all_vertices(strands), table.directions, table.sums(), tracing);
 }
 
 /// [V], the luminance of the diffuse light that arrives.
@@ -73,7 +71,7 @@ std::vector<float> diffuse_light(const LightTable& table, std::span<const float>
         const float* ad = &values[v * table.weights.components];
         const Vec3d all(table.weights.diffuse[table.cells[v]]);
         const Vec3d share = diffuse == 3 ? Vec3d{ad[0], ad[1], ad[2]} : Vec3d(ad[0]);
-        light[v] = static_cast<float>(luminance({all.x * share.x, all.y * share.y, all.z * share.z}));
+        light[v] = static_cast<float>(luminance(Vec3d{all.x * share.x, all.y * share.y, all.z * share.z}));
     }
     return light;
 }

@@ -1,7 +1,6 @@
 // Computes A, the other arrays that the request asks for, and A's error bar from the hair in memory.
 #include <cstdio>
 #include <iterator>
-#include <numeric>
 #include <optional>
 
 #include "core/base/naming_file.h"
@@ -20,8 +19,7 @@ namespace {
 /// Transmittance by tracing the true strands.
 Transmittance trace_all(const StrandScene& scene, const TransmittanceScene& baked,
                         const TransmittanceSettings& settings, Progress& progress) {
-    std::vector<std::uint32_t> vertices(scene.strands().vertex_count());
-    std::iota(vertices.begin(), vertices.end(), 0u);
+    const std::vector<std::uint32_t> vertices = all_vertices(scene.strands());
     const int count = traced_directions(settings.directions);
     const auto directions = make_directions(settings.direction_set, count, settings.seed);
     const double hair_share = baked.receiver ? 0.9 : 1.0;

@@ -13,6 +13,7 @@
 #include "core/volume/functionals.h"
 #include "core/volume/hair_volume.h"
 #include "core/volume/point_shadow.h"
+#include "core/volume/vertex_points.h"
 
 namespace hairbake {
 namespace {
@@ -21,12 +22,6 @@ namespace {
 std::optional<PointShadow> shadow_on_receiver(const TransmittanceScene& scene, Progress& progress) {
     if (!scene.receiver || !scene.occluder || scene.receiver_is_occluder) return std::nullopt;
     return std::optional<PointShadow>(std::in_place, scene.receiver->positions, *scene.occluder,
-                                      shadow_scale(scene.strands.positions, *scene.occluder), progress);
-}
-
-std::optional<PointShadow> shadow_on_vertices(const TransmittanceScene& scene, Progress& progress) {
-    if (!scene.occluder) return std::nullopt;
-    return std::optional<PointShadow>(std::in_place, scene.strands.positions, *scene.occluder,
                                       shadow_scale(scene.strands.positions, *scene.occluder), progress);
 }
 
@@ -119,16 +114,13 @@ Transmittance bake_transmittance_volume(const TransmittanceScene& scene, const T
             "percentile of the widths, " +
             std::to_string(volume.frame.voxel_size) + " model units");
 
-    const std::optional<PointShadow> vertex_shadow = shadow_on_vertices(scene, progress);
+    const VertexPoints vertices(scene, volume, progress);
     const std::vector<Vec3f> positions = receiver_positions(scene, volume.frame);
-    const PointSet vertices{.positions = volume.sorted.vertex_positions,
-                            .model_index = volume.sorted.vertices,
-                            .vectors = {},
-                            .shadow = vertex_shadow ? &*vertex_shadow : nullptr};
     PointSet receiver{.positions = positions, .model_index = {}, .vectors = {}, .shadow = {}};
     if (scene.receiver) receiver.vectors = scene.receiver->normals;
     if (receiver_shadow) receiver.shadow = &*receiver_shadow;
-    evaluate({scene, settings, directions, vertices, scene.receiver ? &receiver : nullptr}, volume, evaluating, result);
+    evaluate({scene, settings, directions, vertices.points(), scene.receiver ? &receiver : nullptr}, volume, evaluating,
+             result);
     describe_voxels(volume, scene.keep_density, result);
     progress.report(1);
     return result;

@@ -1,15 +1,14 @@
 #include "core/volume/weighted_transmittance.h"
 
 #include <cmath>
-#include <optional>
 
 #include "core/base/assert.h"
 #include "core/base/parallel.h"
 #include "core/volume/direction_sweep.h"
 #include "core/volume/hair_volume.h"
 #include "core/volume/own_shadow.h"
-#include "core/volume/point_shadow.h"
 #include "core/volume/row_reader.h"
+#include "core/volume/vertex_points.h"
 
 namespace hairbake {
 namespace {
@@ -44,15 +43,8 @@ std::vector<float> sum_weighted_volume(const TransmittanceScene& scene, const Tr
     if (answers.empty()) return answers;
     ProgressPart building = progress.part(0, 0.4), sweeping = progress.part(0.4, 1);
     const HairVolume volume = make_hair_volume(scene.strands, settings, building);
-    std::optional<PointShadow> shadow;
-    if (scene.occluder)
-        shadow.emplace(scene.strands.positions, *scene.occluder, shadow_scale(scene.strands.positions, *scene.occluder),
-                       progress);
-    const PointSet vertices{.positions = volume.sorted.vertex_positions,
-                            .model_index = volume.sorted.vertices,
-                            .vectors = {},
-                            .shadow = shadow ? &*shadow : nullptr};
-    const RowReader reader(vertices, weights);
+    const VertexPoints vertices(scene, volume, progress);
+    const RowReader reader(vertices.points(), weights);
     const SweepReader* const readers[] = {&reader};
     const auto sums = sweep_directions(volume, directions, readers, sweeping);
     store_sums(scene, volume, sums[0], progress, answers);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/luminance.h"
 #include "core/environment/environment_reader.h"
 #include "core/hair/hair_file.h"
 #include "core/output/canvas.h"

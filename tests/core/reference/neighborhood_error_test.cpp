@@ -14,8 +14,6 @@
 namespace hairbake {
 namespace {
 
-using test_support::all_vertices;
-
 TEST(NeighborhoodFigures, AreThoseOfAStraightLine) {
     std::vector<double> baked, traced;
     for (int i = 0; i < 100; ++i) {

@@ -1,7 +1,6 @@
 // Traces a model in one call.
 #pragma once
 
-#include <numeric>
 #include <vector>
 
 #include "core/reference/strand_scene.h"
@@ -15,12 +14,6 @@ inline std::vector<float> trace(const StrandGeometry& strands, const std::vector
     Progress progress;
     const StrandScene scene(strands, progress);
     return trace_transmittance(scene, vertices, directions, progress);
-}
-
-inline std::vector<std::uint32_t> all_vertices(const StrandGeometry& strands) {
-    std::vector<std::uint32_t> vertices(strands.vertex_count());
-    std::iota(vertices.begin(), vertices.end(), 0u);
-    return vertices;
 }
 
 /// `sets` stratified sets of 64 x 64 directions each, with the seeds 1, 2, ...
