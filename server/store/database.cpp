@@ -349,13 +349,7 @@ void Database::transact(const std::function<void(Sql&)>& body) {
 void Database::keep_log_short() {
     const int pages = writer_->log_pages();
     if (pages < long_log) next_checkpoint_ = long_log;
-    if (pages < next_checkpoint_ || is_shortening_) return;
-    struct Shortening {
-        bool& now;
-        explicit Shortening(bool& flag) : now(flag) { now = true; }
-        ~Shortening() { now = false; }
-    } const shortening{is_shortening_};
-    next_checkpoint_ = pages + long_log;
+    if (pages < next_checkpoint_) return;
     try {
         act_on_long_log_ ? act_on_long_log_() : static_cast<void>(checkpoint());
     } catch (const std::exception& error) {
@@ -370,6 +364,7 @@ void Database::when_log_is_long(std::function<void()> act) {
 
 std::int32_t Database::checkpoint() {
     const auto held = lock();
+    next_checkpoint_ = writer_->log_pages() + long_log;  // whoever makes this one may write while it holds locks
     check_in_place();
     try {
         writer_->rows("PRAGMA wal_checkpoint(PASSIVE)", {});

@@ -129,8 +129,7 @@ private:
     std::atomic<std::int32_t> least_number_ = 0, last_number_ = 0;  ///< that the file itself may hold
     std::unique_ptr<Connection> writer_, reader_;
     PinnedFiles pins_;                       ///< the files that both connections have open
-    std::function<void()> act_on_long_log_;  ///< guarded by writing_, as the next two
-    bool is_shortening_ = false;
+    std::function<void()> act_on_long_log_;  ///< guarded by writing_, as the next one
     int next_checkpoint_ = 0;  ///< pages of the log
     mutable std::mutex finding_;
     std::string spoiled_;  ///< guarded by finding_
