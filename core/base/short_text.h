@@ -1,4 +1,4 @@
-// Texts of clients and files, cut for messages.
+// Texts of clients and files, made fit for messages.
 #pragma once
 
 #include <cstddef>
@@ -30,6 +30,17 @@ inline std::string shortened(const std::string& text, std::size_t length) {
     if (text.size() <= length) return text;
     while (length > 0 && (static_cast<unsigned char>(text[length]) & 0xc0) == 0x80) --length;
     return text.substr(0, length) + "...";
+}
+
+/// The text with control characters escaped, in quotation marks, cut after `length` bytes.
+inline std::string quoted(const std::string& text, std::size_t length) {
+    return '"' + shortened(escaped(text), length) + '"';
+}
+
+/// Puts `to` for every `from`, which is not empty.
+inline void replace_all(std::string& text, std::string_view from, std::string_view to) {
+    for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+        text.replace(at, from.size(), to);
 }
 
 }  // namespace hairbake

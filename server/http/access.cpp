@@ -21,7 +21,7 @@ const std::string cookie_name = "hairbake_session";
 
 constexpr std::size_t longest_shown = 200;  // of a header
 
-std::string quoted(const std::string& text) { return '"' + shortened(escaped(text), longest_shown) + '"'; }
+std::string quoted(const std::string& text) { return hairbake::quoted(text, longest_shown); }
 
 std::string list_of(const std::set<Scope>& scopes) {
     std::string list;

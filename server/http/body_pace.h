@@ -17,6 +17,8 @@ public:
 
     explicit BodyPace(const Limits& limits) : limits_(limits) {}
 
+    const Limits& limits() const { return limits_; }
+
     /// The daemon waited for the client, and then `bytes` came. Returns false when a window is over and had too few.
     bool add(std::uint64_t bytes, std::chrono::nanoseconds waited);
 

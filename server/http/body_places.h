@@ -2,12 +2,16 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <string>
 
 namespace hairbake {
+
+/// Longer bodies take a place. nginx forwards shorter ones whole, and they fit into memory.
+inline constexpr std::uint64_t long_body = 64 << 10;
 
 /// Thread-safe. A request takes a place when it is let in, after the check of its token, and keeps it until it is
 /// answered. So a request that is refused holds no place, and one address cannot take all of them.

@@ -26,6 +26,7 @@ public:
     Connection& operator=(const Connection&) = delete;
 
     int socket() const { return socket_; }
+    const Patience& patience() const { return patience_; }
     /// Waits for bytes of the request's head, unless some are unread. Returns false when the client has closed, when
     /// the patience for the whole head has ended since the construction, or soon after `still_wanted` returns false.
     bool await_head(const std::function<bool()>& still_wanted);

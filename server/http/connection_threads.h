@@ -13,9 +13,9 @@ namespace hairbake {
 
 /// A thread serves the connections that it accepted itself, so under light load no connection changes its thread. A few
 /// threads accept at a time; the others sleep. The thread that fell asleep last is woken first, since its stack is
-/// still in the cache. While all `threads` serve, one more thread accepts: connections wait in the queue in order. Those
-/// that have sent something go first. When the queue is full, the first that has sent nothing is refused, or else the new
-/// one: so idle connections keep no others out.
+/// still in the cache. While all `threads` serve, one more thread accepts: connections wait in the queue in order.
+/// Those that have sent something go first. When the queue is full, the first that has sent nothing is refused, or else
+/// the new one: so idle connections keep no others out.
 class ConnectionThreads {
 public:
     /// Takes over an accepted connection's socket. Must not throw.

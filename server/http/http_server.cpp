@@ -19,6 +19,7 @@
 
 #include "core/base/error.h"
 #include "core/base/short_text.h"
+#include "server/http/body_places.h"
 #include "server/http/connection.h"
 #include "server/http/connection_threads.h"
 #include "server/http/lingering.h"
@@ -38,10 +39,8 @@ constexpr std::chrono::milliseconds lingering = 1s;
 constexpr std::size_t most_lingering = 1000;  // connections
 /// A body of up to this size is in nginx's first read (proxy_buffer_size), so nginx need not buffer it.
 constexpr std::size_t one_read = 6144;
-/// A body of up to this size takes no place (router.cpp).
-constexpr std::uint64_t short_body = 64 << 10;
 constexpr std::size_t longest_shown = 100;  // of a header or an address in a message
-const std::string any_path = "/";  // every request gets this path in the library; the routing is ours
+const std::string any_path = "/";           // every request gets this path in the library; the routing is ours
 
 /// Whether the current connection's request was not read to its end.
 thread_local bool body_left = false;
@@ -115,13 +114,13 @@ bool is_local(const httplib::Request& request) {
 }
 
 bool is_short(const httplib::Request& request) {
-    return !is_chunked(request) && read_length(request.get_header_value("Content-Length")).value_or(0) <= short_body;
+    return !is_chunked(request) && read_length(request.get_header_value("Content-Length")).value_or(0) <= long_body;
 }
 
 /// The reply to a request with a malformed head. Nothing when the head is well-formed.
 std::optional<HttpReply> wrong_head(const httplib::Request& request, const std::optional<Target>& target) {
     const auto refuse = [](const std::string& words) { return problem(400, "malformed", words); };
-    const auto shown = [](const std::string& text) { return '"' + shortened(escaped(text), longest_shown) + '"'; };
+    const auto shown = [](const std::string& text) { return quoted(text, longest_shown); };
     for (const auto& [name, value] : request.headers)
         if (has_control_characters(name) || has_control_characters(value))
             return refuse("the header " + shown(name) + " has a control character: " + shown(value) +
@@ -367,7 +366,7 @@ private:
     }
 
     void serve_request(Connection& connection, const std::function<bool()>& keeps_thread) {
-        RequestReader reader(connection, pace_, patience.head, keeps_thread);
+        RequestReader reader(connection, pace_, keeps_thread);
         ConnectionStream stream(connection, reader);
         current_reader = &reader;
         bool closed = false;

@@ -26,6 +26,8 @@ const char* title_of(int status) {
             return "Not found";
         case 405:
             return "Method not allowed";
+        case 408:
+            return "Too slow";
         case 409:
             return "Conflict";
         case 410:
@@ -40,8 +42,6 @@ const char* title_of(int status) {
             return "Address too long";
         case 415:
             return "Unsupported media type";
-        case 408:
-            return "Too slow";
         case 416:
             return "Range not satisfiable";
         case 422:

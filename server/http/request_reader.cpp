@@ -1,5 +1,6 @@
 #include "server/http/request_reader.h"
 
+#include <chrono>
 #include <cstdint>
 #include <string_view>
 #include <utility>
@@ -16,13 +17,8 @@ std::string seconds_text(std::chrono::milliseconds time) {
 
 }  // namespace
 
-RequestReader::RequestReader(Connection& connection, const BodyPace::Limits& pace,
-                             std::chrono::milliseconds head_patience, std::function<bool()> keeps_thread)
-    : connection_(connection),
-      limits_(pace),
-      pace_(pace),
-      head_patience_(head_patience),
-      keeps_thread_(std::move(keeps_thread)) {}
+RequestReader::RequestReader(Connection& connection, const BodyPace::Limits& pace, std::function<bool()> keeps_thread)
+    : connection_(connection), pace_(pace), keeps_thread_(std::move(keeps_thread)) {}
 
 ssize_t RequestReader::read(char* data, std::size_t size) {
     if (!given_up_.empty()) return -1;
@@ -46,7 +42,7 @@ ssize_t RequestReader::read_head(char* data, std::size_t size) {
     if (++head_bytes_ > longest_head) return -1;  // the library reads a head byte by byte
     if (connection_.await_head(keeps_thread_)) return connection_.read(data, size);
     if (connection_.is_closed()) return 0;
-    given_up_ = "the head of the request did not arrive within " + seconds_text(head_patience_) +
+    given_up_ = "the head of the request did not arrive within " + seconds_text(connection_.patience().head) +
                 ", or not at once while other connections waited: send it again, whole";
     return -1;
 }
@@ -60,8 +56,8 @@ ssize_t RequestReader::read_body(char* data, std::size_t size) {
     }
     const ssize_t count = connection_.read(data, size);
     if (count <= 0 || pace_.add(static_cast<std::uint64_t>(count), Clock::now() - begin)) return count;
-    given_up_ = "the body brought fewer than " + std::to_string(limits_.bytes_per_second) +
-                " bytes a second, as the mean of " + seconds_text(limits_.window) +
+    given_up_ = "the body brought fewer than " + std::to_string(pace_.limits().bytes_per_second) +
+                " bytes a second, as the mean of " + seconds_text(pace_.limits().window) +
                 " ([listen] body_rate, body_window_s): send it over a faster connection, or as a resumable upload "
                 "(/v1/uploads), which keeps what arrived";
     return -1;

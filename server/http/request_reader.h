@@ -1,7 +1,6 @@
 // The bytes of one request from its connection, and when a slow client is given up.
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <string>
@@ -14,10 +13,8 @@ namespace hairbake {
 /// For one thread. The connection must outlive it.
 class RequestReader {
 public:
-    /// `head_patience` is the connection's, for the message. `keeps_thread` tells whether the client may still let this
-    /// thread wait for a head or a short body.
-    RequestReader(Connection& connection, const BodyPace::Limits& pace, std::chrono::milliseconds head_patience,
-                  std::function<bool()> keeps_thread);
+    /// `keeps_thread` tells whether the client may still let this thread wait for a head or a short body.
+    RequestReader(Connection& connection, const BodyPace::Limits& pace, std::function<bool()> keeps_thread);
 
     /// As Connection::read(). -1 also for a head that is too long, and when the client is given up.
     ssize_t read(char* data, std::size_t size);
@@ -39,9 +36,7 @@ private:
     ssize_t read_body(char* data, std::size_t size);
 
     Connection& connection_;
-    const BodyPace::Limits limits_;
     BodyPace pace_;
-    const std::chrono::milliseconds head_patience_;
     const std::function<bool()> keeps_thread_;
     bool in_head_ = true, client_waits_ = false, is_short_ = false;
     std::size_t head_bytes_ = 0;

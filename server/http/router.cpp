@@ -12,7 +12,6 @@ namespace hairbake {
 namespace {
 
 using Parameters = std::map<std::string, std::string>;
-constexpr std::uint64_t long_body = 64 << 10;  // nginx forwards shorter ones whole, and they fit into memory
 
 /// The values of the pattern's {…}. Nothing when the path does not match.
 std::optional<Parameters> match(std::string_view pattern, const std::vector<std::string>& path) {
@@ -111,10 +110,10 @@ HttpReply Router::answer_or_throw(HttpRequest& request) const {
     }
     access_.check(request, route->scope);
     if (std::optional<HttpReply> wrong = wrong_body(request, *route)) return *wrong;
-    const auto place = needs_place(request, *route) ? places_.take(request.header("X-Forwarded-For").value_or(""))
-                                                    : std::optional<BodyPlaces::Place>();
+    const bool is_placed = needs_place(request, *route);
     const std::string address = request.header("X-Forwarded-For").value_or("");
-    if (needs_place(request, *route) && !place) {
+    const auto place = is_placed ? places_.take(address) : std::optional<BodyPlaces::Place>();
+    if (is_placed && !place) {
         const std::string wait = std::to_string(times_->seconds_until_one_ends(address, PlaceTimes::Clock::now()));
         return problem(429, "too-many", places_.refusal(address) + ": try again in " + wait + " s")
             .with("Retry-After", wait);

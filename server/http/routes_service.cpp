@@ -30,11 +30,6 @@ bool may_know_paths(Access& access, HttpRequest& request) try {
     return false;
 }
 
-void replace_all(std::string& text, const std::string& from, const std::string& to) {
-    for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
-        text.replace(at, from.size(), to);
-}
-
 /// The texts of /readyz without the folders of the store and of the worker program.
 std::string without_paths(std::string text, const Settings& settings) {
     replace_all(text, settings.store.string(), "the store");

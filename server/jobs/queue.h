@@ -69,8 +69,8 @@ public:
         std::size_t planned_again = 0;  ///< stages that another version of hairbake had queued
     };
     /// At boot. Stages of `surviving` workers stay running. Other running stages are queued again, and so are stages
-    /// whose files are not all stored. Stages whose workers died go on waiting, and so does a stage that ran at the end
-    /// of several daemons, as after a death for each end but the first. Inputs that are not stored are forgotten. Queued stages of another version of
+    /// whose files are not all stored. Stages whose workers died go on waiting. A stage that ran when n >= 2 daemons
+    /// ended waits as after n - 1 deaths. Inputs that are not stored are forgotten. Queued stages of another version of
     /// hairbake are planned again; their bakes keep their ids.
     Recovered recover(const std::vector<StartedTask>& surviving = {});
 
@@ -126,8 +126,8 @@ public:
     /// the queue: by priority, then age. Without this, bakes that each have a part of their results would wait for each
     /// other's room for ever.
     bool can_give_way(const std::string& stage, std::uint64_t bytes);
-    /// Removes such results, those of the latest bakes first, and queues their stages again. Removes nothing and returns
-    /// false where they hold less. The caller holds database.lock() until it has used the room.
+    /// Removes such results, those of the latest bakes first, and queues their stages again. Removes nothing and
+    /// returns false where they hold less. The caller holds database.lock() until it has used the room.
     bool make_others_give_way(const std::string& stage, std::uint64_t bytes);
 
     /// Throws Refusal(not_found or gone).

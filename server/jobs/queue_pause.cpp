@@ -48,11 +48,9 @@ void QueuePause::met_trouble(const std::string& stage, const std::string& reason
     ++troubles_;
     bool is_own = false;
     if (!stage.empty()) {
-        Wait& wait = waits_[stage];
+        const Wait& wait = waits_[stage];
         is_own = wait.troubles > 0 && works_ > wait.works;
-        wait.works = works_;
-        wait.reason = reason;
-        held_[stage] = now + wait_after(++wait.troubles);
+        hold(stage, reason, now + wait_after(wait.troubles + 1));
     }
     const bool is_first = reason_.empty(), is_probe = probes_.erase(stage) > 0;
     if (is_first && is_own) return;

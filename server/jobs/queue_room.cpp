@@ -1,6 +1,8 @@
 // Room for a result that other bakes which have not ended hold: later ones give way.
-#include <algorithm>
 #include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "server/jobs/queue.h"
 #include "server/store/blob_store.h"

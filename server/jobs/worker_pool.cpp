@@ -225,12 +225,13 @@ Outcome WorkerPool::run(const ClaimedStage& stage) {
     }
     folder.reset();  // first: on a full disk the database may need its space
     std::vector<std::string> suspects = input_digests(stage);
-    if (outcome.end == End::trouble)
+    if (outcome.end == End::trouble) {
+        outcome.message += store_.advice_for_closed(suspects);
         std::erase_if(suspects, [&](const std::string& digest) {
             return kind_of_path(store_.path_of(digest)) != PathKind::nothing;  // also what cannot be looked at
         });
+    }
     const bool of_input = outcome.end == End::failed && outcome.kind == ErrorKind::bad_input;
-    if (outcome.end == End::trouble) outcome.message += store_.advice_for_closed(input_digests(stage));
     if (of_input || outcome.end == End::trouble) remove_spoiled_inputs(suspects);
     return outcome;
 }

@@ -117,8 +117,8 @@ public:
     /// Opens a blob; verifies its digest the first time after the start, and when size, mtime or ctime of the file have
     /// changed since.
     /// Throws Refusal(not_found).
-    /// Throws Refusal(busy) for a file that cannot be read now, or whose folder was moved or replaced since the start; it
-    /// is not forgotten.
+    /// Throws Refusal(busy) for a file that cannot be read now, or whose folder was moved or replaced since the start;
+    /// it is not forgotten.
     /// Throws LostBlob.
     OpenBlob open(const std::string& digest, const OnLoss& on_loss);
 

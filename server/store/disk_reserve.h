@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "core/base/error.h"
@@ -46,8 +47,9 @@ public:
     ///
     ///   1. the reserve is removed;
     ///   2. the database's log is written into the database and cut;
-    ///   3. the files of DeletionNeedsRoom are cut to nothing, if they have `enough` bytes. Their deletion was asked for
-    ///      and nothing speaks against it. After a crash at this moment, the next start finds files of the wrong size.
+    ///   3. the files of DeletionNeedsRoom are cut to nothing, if they have `enough` bytes. Their deletion was asked
+    ///      for and nothing speaks against it. After a crash at this moment, the next start finds files of the wrong
+    ///      size.
     ///
     /// The reserve is filled again from what was freed, before another transaction can take it.
     /// Throws what `deletion` throws. For a disk that is full all the same the message tells what works.

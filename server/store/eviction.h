@@ -1,7 +1,7 @@
 // Eviction: which blobs may go when the store needs room, and their removal.
 //
-// Only results go, with their stages and done bakes, and blobs that nothing refers to. A blob that a client sent is never
-// evicted: nobody else may have it.
+// Only results go, with their stages and done bakes, and blobs that nothing refers to. A blob that a client sent is
+// never evicted: nobody else may have it.
 #pragma once
 
 #include <cstdint>

@@ -24,7 +24,7 @@ void require_removable(const fs::path& file) try {
     }
     if (::faccessat(AT_FDCWD, file.parent_path().c_str(), W_OK | X_OK, AT_EACCESS) != 0) throw_store_error(file, errno);
     if (protecting_attribute(file) || protecting_attribute(file.parent_path())) throw_store_error(file, EPERM);
-} catch (const Error& error) {  // no full disk, for which a deletion has a reserve (disk_reserve.h)
+} catch (const Error& error) {  // not for a full disk: a deletion has a reserve for that (disk_reserve.h)
     throw Refusal(Refused::unwritable, error.what());
 }
 

@@ -13,7 +13,8 @@ struct FileCount {
 };
 
 /// Call it before the record of a file is removed, so that no file stays without one.
-/// Throws Refusal(full) with the reason when the file is there and its folder cannot be written.
+/// Throws Refusal(unwritable) with the reason when the file is there and cannot be looked at, its folder cannot be
+/// written, or an attribute protects one of them.
 void require_removable(const std::filesystem::path& file);
 
 /// Unlinks a file and adds it to `count`. A file that cannot be removed stays, with a line in the log.

@@ -109,8 +109,9 @@ INSERT INTO sent_blobs SELECT sha256 FROM blobs WHERE sha256 IN (SELECT sha256 F
 CREATE TRIGGER forget_sent_blob AFTER DELETE ON blobs BEGIN DELETE FROM sent_blobs WHERE sha256 = OLD.sha256; END;
 )sql";
 
-// The deaths of a stage's workers that count (jobs/stage_deaths.h), and how often a daemon ended while the stage ran. Bakes
-// whose rows were removed, with the state that they had: those of evicted results, and old failed and cancelled ones.
+// The deaths of a stage's workers that count (jobs/stage_deaths.h), and how often a daemon ended while the stage ran.
+// Bakes whose rows were removed, with the state that they had: those of evicted results, and old failed and cancelled
+// ones.
 constexpr const char* version_8 = R"sql(
 ALTER TABLE stages ADD COLUMN deaths TEXT;
 ALTER TABLE stages ADD COLUMN ends INTEGER NOT NULL DEFAULT 0;

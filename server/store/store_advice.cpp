@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <system_error>
 
+#include "core/base/short_text.h"
+
 namespace hairbake {
 namespace fs = std::filesystem;
 namespace {
@@ -91,9 +93,7 @@ std::string advice_for(const fs::path& path, int error) {
 }
 
 std::string without_path(std::string text, const fs::path& store) {
-    const std::string folder = store.string(), words = "the store";
-    for (std::size_t at = 0; (at = text.find(folder, at)) != std::string::npos; at += words.size())
-        text.replace(at, folder.size(), words);
+    replace_all(text, store.string(), "the store");
     return text;
 }
 

@@ -118,16 +118,19 @@ void StoreIdentity::compare(const Mark& row) const {
              std::string("Put the newer folder back. ") + advice_to_accept);
 }
 
+/// A file that is no id counts as none.
+std::optional<StoreIdentity::Mark> StoreIdentity::read_valid_mark(const fs::path& folder) try {
+    return read_mark(folder);
+} catch (const Error& error) {
+    if (error.system_error() != 0) throw;
+    return std::nullopt;
+}
+
 void StoreIdentity::check_log_belongs(const fs::path& folder, const fs::path& database) {
     std::error_code missing;
     const fs::path log = fs::canonical(database, missing).string() + "-wal";
     if (missing || fs::file_size(log, missing) == 0 || missing) return;
-    std::optional<Mark> mark;
-    try {
-        mark = read_mark(folder);
-    } catch (const Error& error) {  // a file that is no id: compare() says so
-        if (error.system_error() != 0) throw;
-    }
+    const std::optional<Mark> mark = read_valid_mark(folder);  // compare() tells of a file that is no id
     const std::optional<std::int64_t> header = DatabaseFiles::number_in(database);
     if (!mark || !header || *header >= mark->header) return;
     throw Error(ErrorKind::bad_input,
@@ -180,12 +183,7 @@ void StoreIdentity::advance_if_changed() {
 }
 
 void StoreIdentity::accept(const fs::path& folder, Database& database) {
-    std::optional<Mark> mark;
-    try {
-        mark = read_mark(folder);
-    } catch (const Error& error) {  // a file that is no id is replaced
-        if (error.system_error() != 0) throw;
-    }
+    const std::optional<Mark> mark = read_valid_mark(folder);  // a file that is no id is replaced
     Mark both;
     database.write([&](Sql& sql) {
         const std::vector<SqlRow> rows = sql.rows("SELECT id, generation FROM store");

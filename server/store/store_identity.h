@@ -67,6 +67,7 @@ private:
         std::int64_t generation = 0;
         std::int64_t header = 0;  ///< least generation in the header of the database file; 0: not known
     };
+    static std::optional<Mark> read_valid_mark(const std::filesystem::path& folder);
     static std::optional<Mark> read_mark(const std::filesystem::path& folder);
     static void write_mark(const std::filesystem::path& folder, const Mark& mark);
     void compare(const Mark& row) const;

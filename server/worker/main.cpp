@@ -132,7 +132,8 @@ int fail(const Error& error, const std::string& task, const fs::path& folder) {
     return 1;
 }
 
-/// Of std::filesystem; or no thread can be started: by the limit of memory, for the thread's stack, or because the machine has no more.
+/// An error of std::filesystem, or no thread can be started: by the limit of memory, for the thread's stack, or because
+/// the machine has no more.
 Error error_of(const std::system_error& error) {
     if (error.code() == std::errc::resource_unavailable_try_again && hairbake::memory_limit_refuses(largest_stack))
         return Error(ErrorKind::out_of_resources, "the worker's memory limit was reached");
